@@ -58,7 +58,11 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/data DESTINATION ${CMAKE_INSTALL_DOCDIR}
         FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/html DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
 
-# For programs that are not built by CMake.
+# For programs that are not built by CMake. What a static library needs is linked without the option --static, too.
+if(BUILD_SHARED_LIBS)
+  set(pcor_private_requires "\nRequires.private:")
+  set(pcor_private_libs "\nLibs.private:")
+endif()
 set(pcor_pkg_config pcor-realtime)
 if(PCOR_MODEL)
   list(APPEND pcor_pkg_config pcor-model)

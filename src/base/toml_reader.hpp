@@ -5,6 +5,7 @@
 #ifndef NDEBUG
 #define NDEBUG
 #endif
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <cstdint>
@@ -86,6 +87,13 @@ class TomlReader {
 
   /// An error at the value of `entry`; for an error at the key use its `position`.
   [[noreturn]] void fail(const Entry& entry, const std::string& what) const { fail(*entry.node, what); }
+
+  /// The same with a text that has these values.
+  template <class Where, class First, class... Others>
+  [[noreturn]] void fail(const Where& where, fmt::format_string<const First&, const Others&...> text,
+                         const First& first, const Others&... others) const {
+    fail(where, fmt::format(text, first, others...));
+  }
 
   /// An error at a key that is not among the `known` ones.
   [[noreturn]] void refuse(const Entry& entry, const Names& known) const;

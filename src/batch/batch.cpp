@@ -31,7 +31,7 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   require(Quantity::time);
   for (const Rate& each : rates) require(each.rate);
   if (with == CorrectWith::lams && !chain->has_lams())
-    fail("correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
+    fail("correction with LAMS needs the role 'lams_airspeed', which" + std::string(not_recorded));
   return std::move(*chain);
 }
 

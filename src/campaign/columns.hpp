@@ -11,7 +11,7 @@
 #include "campaign/candidate.hpp"
 #include "campaign/gps_system.hpp"
 #include "numerics/binning.hpp"
-#include "numerics/noise_flights.hpp"
+#include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
 #include "residuals/packed_residuals.hpp"
 

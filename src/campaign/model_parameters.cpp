@@ -4,6 +4,8 @@
 
 #include <pcor/effects/catalogue.hpp>
 
+#include "model_io/sensor_doubt.hpp"
+
 namespace pcor::internal {
 
 std::size_t parameter_count(const Model& model) {
@@ -33,7 +35,7 @@ std::vector<std::size_t> free_parameters(const ModelDefinition& model) {
 }
 
 Eigen::MatrixXd stated_covariance(const ModelDefinition& model) {
-  const std::vector<double> stated = uncertainty_of(model).covariance;
+  const std::vector<double> stated = stated_uncertainty(model).covariance;
   const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
   return Eigen::Map<const Eigen::MatrixXd>(stated.data(), size, size);
 }

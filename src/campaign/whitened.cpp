@@ -77,7 +77,7 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
       noise[first].level.resize(1);
       if (!share.is_local(first)) continue;
       const Binning& own = flights.bins[first];
-      noise[first].level[0] = level_of_bins(noise_levels(own, fit.left(first), shared), own);
+      noise[first].level[0] = noise_levels(own, fit.left(first), shared);
     }
   }
   return noise;

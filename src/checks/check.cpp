@@ -135,9 +135,8 @@ FlightPart part_of(const FlightSet& flights, std::size_t number, const std::opti
   FlightPart part;
   part.unusable = its_model ? without_values(flight, *its_model)
                             : fmt::format(
-                                  "{}: there are no static and dynamic pressures with values under the "
-                                  "usual names (PSXC and QCXC, PSFD and QCF); name them in the "
-                                  "[variables] of a model, -m",
+                                  "{}: name its pressures in [variables] of a model, -m: there are no values "
+                                  "under the usual names (PSXC and QCXC, PSFD and QCF)",
                                   flight.path().string());
   if (!part.unusable.empty()) return part;
   part.model = its_model->model.name;

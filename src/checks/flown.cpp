@@ -138,10 +138,14 @@ double usual_step(const CheckedFlights& flights,
   return most == values.end() ? nan : most->first;
 }
 
-void note_other_steps(std::size_t others, std::size_t flights, double step, Notes& notes) {
+void note_other_steps(const CheckedFlights& flights, double step,
+                      const std::function<bool(const CheckedFlight&)>& has_values, Notes& notes) {
+  const auto others = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
+    return !has_step(flight, step) && has_values(flight);
+  });
   if (others == 0) return;
   notes.push_back(fmt::format("{} of {} flights are not used: record interval differs from {:g} s", others,
-                              flights, step));
+                              flights.size(), step));
 }
 
 CheckResult not_run(std::string reason) {

@@ -94,8 +94,10 @@ double usual_step(const CheckedFlights& flights,
                   const std::function<std::vector<double>(const CheckedFlight&)>& series);
 
 /// Adds a note if some flights are not used because of their record interval.
-/// @param others number of flights with another interval than `step`, s
-void note_other_steps(std::size_t others, std::size_t flights, double step, Notes& notes);
+/// @param step of the used flights, s @param has_values whether a flight has values for the check, whatever
+/// its interval
+void note_other_steps(const CheckedFlights& flights, double step,
+                      const std::function<bool(const CheckedFlight&)>& has_values, Notes& notes);
 
 /// Result with the reason why the check was not run.
 CheckResult not_run(std::string reason);

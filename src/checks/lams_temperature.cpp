@@ -31,7 +31,6 @@ struct Differences {
   std::vector<bool> in_cloud{};
   std::vector<bool> near_ground{};  ///< samples in the lowest kilometre above the field
   double step = nan;                ///< record interval with the most differences, s
-  std::size_t other_steps = 0;      ///< number of flights that are left out because theirs differs
 };
 
 std::vector<bool> in_cloud(const FlightAir& air) {
@@ -67,11 +66,7 @@ Differences all_differences(const CheckedFlights& flights) {
   for (const CheckedFlight& flight : flights) {
     const FlightAir& air = flight.air;
     const std::vector<double> difference = difference_of(air);
-    if (!has_value(difference)) continue;
-    if (!has_step(flight, all.step)) {
-      ++all.other_steps;
-      continue;
-    }
+    if (!has_value(difference) || !has_step(flight, all.step)) continue;
     const std::vector<bool> cloud = in_cloud(air);
     const double field = field_of(air);
     for (std::size_t i = 0; i < air.size(); ++i) {
@@ -252,7 +247,10 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     }
   }
   result.finding += ".";
-  note_other_steps(all.other_steps, flights.size(), all.step, result.notes);
+  const auto has_difference = [](const CheckedFlight& flight) {
+    return has_value(difference_of(flight.air));
+  };
+  note_other_steps(flights, all.step, has_difference, result.notes);
 
   std::vector<Part> parts{
       outside, inside,

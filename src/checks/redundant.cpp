@@ -144,10 +144,10 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
         "The avionics smooth their pressures, so samples with a pressure change above {} hPa/s are excluded",
         fastest_of_avionics));
   }
-  const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
-    return !has_step(flight, fit.step) && has_value(first(flight)) && has_value(second(flight));
-  });
-  note_other_steps(static_cast<std::size_t>(other_steps), flights.size(), fit.step, result.notes);
+  const auto has_both = [&](const CheckedFlight& flight) {
+    return has_value(first(flight)) && has_value(second(flight));
+  };
+  note_other_steps(flights, fit.step, has_both, result.notes);
   result.tables = {table_of(fit, std::move(table))};
   const auto column = [&](const char* name, const std::string& title, const SeriesOfFlight& series) {
     return column_of(flights, check + name, title, "hPa", [&series](const CheckedFlight& flight) {

@@ -19,7 +19,7 @@
 #include "compare/model_sums.hpp"
 #include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
-#include "numerics/noise_flights.hpp"
+#include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
 #include "parallel/workers.hpp"
 #include "report/shown_flights.hpp"

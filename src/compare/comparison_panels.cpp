@@ -3,6 +3,7 @@
 #include <pcor/compare/comparison_report.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -276,8 +277,10 @@ Report comparison_report(const Comparison& comparison) {
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
+  std::vector<std::string> names;
+  for (const ModelComparison& model : comparison.models) names.push_back(model.name);
   panels.report().title = best->is_by_gps()
-                              ? fmt::format("Residual by {}", best->reference)
+                              ? fmt::format("Residual by {}: {}", best->reference, fmt::join(names, "; "))
                               : fmt::format("{}{}: rms residual {:.3f} hPa, {:.1f} times the noise",
                                             comparison.models.size() > 1 ? "Smallest error: " : "",
                                             best->name, best->all.rms, best->all.rms_over_noise());

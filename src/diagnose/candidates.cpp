@@ -9,6 +9,7 @@
 #include <pcor/realtime/chain.hpp>
 #include "campaign/model_parameters.hpp"
 #include "flight/trouble_with_values.hpp"
+#include "model_io/parameter_unit.hpp"
 #include "parallel/flight_partition.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
@@ -207,9 +208,9 @@ std::vector<BaseCoefficient> base_of(const ModelDefinition& model) {
     const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
     for (std::size_t p = 0; p < names.size(); ++p, ++number) {
       if (!std::binary_search(free.begin(), free.end(), number)) continue;
-      base.push_back({effect.id + "." + names[p],
-                      std::string(info == nullptr ? "" : info->parameters[p].unit), effect.parameters[p],
-                      model.bounds(e, p), false, info == nullptr ? 0.0 : info->parameters[p].typical});
+      base.push_back({effect.id + "." + names[p], parameter_unit(effect, p), effect.parameters[p],
+                      model.bounds(e, p), false,
+                      info == nullptr ? 0.0 : std::abs(info->parameters[p].typical)});
     }
   }
   return base;

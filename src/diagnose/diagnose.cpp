@@ -8,10 +8,7 @@
 #include <optional>
 
 #include <pcor/base/error.hpp>
-#include <pcor/effects/catalogue.hpp>
-#include <pcor/model/formula.hpp>
 #include "campaign/gps_rows.hpp"
-#include "diagnose/advice.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
 #include "diagnose/findings.hpp"
@@ -27,44 +24,12 @@
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
-#include "roles/role_evidence.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
 namespace {
-
-/// Inputs of the effects of findings on either system; an angle is also read as its differential pressure.
-EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefinition& model) {
-  EffectInputs inputs;
-  const auto read = [&](Quantity quantity) {
-    inputs.quantities.insert(quantity);
-    inputs.variables.insert(model.variable_of(quantity));
-  };
-  const auto read_with_angles = [&](Quantity need) {
-    read(need);
-    const bool is_attack = need == Quantity::attack || need == Quantity::attack_ratio;
-    const bool is_sideslip = need == Quantity::sideslip || need == Quantity::sideslip_ratio;
-    if (is_attack) read(Quantity::attack_differential_pressure);
-    if (is_sideslip) read(Quantity::sideslip_differential_pressure);
-    if (is_attack || is_sideslip) read(is_attack ? Quantity::attack : Quantity::sideslip);
-  };
-  for (const Finding& finding : findings) {
-    if (finding.effect.is_formula()) {
-      const auto formula = Formula::parse(finding.effect.formula, finding.effect.parameter_names, nullptr);
-      for (const std::string& name : formula ? formula->variables() : std::vector<std::string>()) {
-        inputs.variables.insert(name);
-        if (quantity_named(name) != Quantity::count) read_with_angles(quantity_named(name));
-      }
-      continue;
-    }
-    for (const Quantity need : effect_named(finding.effect.id)->needs) {
-      if (need != Quantity::count) read_with_angles(need);
-    }
-  }
-  return inputs;
-}
 
 /// Residual of all used samples of a flight, including those outside all bins.
 /// @param change of the coefficients of base and groups
@@ -129,14 +94,10 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
 /// Keeps the records of the flights in pictures and shares them with all members.
 void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& requested,
                  std::vector<FlightDiagnosis>& flights) {
-  for (std::size_t f = 0; f < flights.size(); ++f) {
-    flights[f].number = analysis.flights()[f].file;
-    flights[f].name = analysis.flights()[f].samples->name;
-  }
   std::vector<std::size_t> kept;
   if (requested) {
     for (std::size_t f = 0; f < flights.size(); ++f) {
-      if (std::find(requested->begin(), requested->end(), flights[f].number) != requested->end())
+      if (std::find(requested->begin(), requested->end(), analysis.flights()[f].file) != requested->end())
         kept.push_back(f);
     }
   } else {
@@ -146,20 +107,12 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
   }
   auto series = analysis.share().of_entries(kept).of_each_flight<FlightDiagnosis>(
       [&](std::size_t k) { return std::move(flights[kept[k]]); });
-  for (FlightDiagnosis& flight : flights) {
-    FlightDiagnosis outline;
-    outline.number = flight.number;
-    outline.name = std::move(flight.name);
-    flight = std::move(outline);
-  }
+  flights.assign(flights.size(), {});
   for (std::size_t k = 0; k < kept.size(); ++k) flights[kept[k]] = std::move(series[k]);
-}
-
-/// Rms over all flights of one of their series. @param flights local ones
-double rms_of_flights(const Analysis& analysis, const std::vector<FlightDiagnosis>& flights,
-                      std::vector<double> FlightDiagnosis::*series) {
-  return rms_of(
-      analysis.share(), [&](std::size_t f) -> const auto& { return flights[f].*series; });
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    flights[f].number = analysis.flights()[f].file;
+    flights[f].name = analysis.flights()[f].samples->name;
+  }
 }
 
 /// Model coefficients of least squares, as a refit has them, with the errors by the noise.
@@ -275,64 +228,6 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   return alone && diagnosis.rival.empty() ? Verdict::identified : Verdict::ambiguous;
 }
 
-/// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
-/// clearly predict held-out parts may be one.
-void doubt_by_atmosphere(Diagnosis& diagnosis) {
-  constexpr double clear = 3.0;  // standard errors
-  for (Finding& finding : diagnosis.findings) {
-    if (finding.gain > clear * finding.gain_error) continue;
-    finding.rival = "the atmosphere";
-    diagnosis.notes.push_back(warning_note(fmt::format(
-        "variations of the atmosphere may be the cause instead of {}: it decreases chi2 of held-out parts "
-        "by {:.0f} +- {:.0f}; give a laser or a second system as a further reference",
-        finding.id(), finding.gain, finding.gain_error)));
-  }
-}
-
-/// Withdraws the findings if a straight line in one variable of the files is more likely than they are.
-void overrule(Diagnosis& diagnosis, const std::string& variable) {
-  for (const Finding& finding : diagnosis.findings) {
-    diagnosis.notes.push_back(
-        fmt::format("{} is not reported as the cause: a straight line in {} is more "
-                    "likely, with a probability above 95 %",
-                    finding.id(), variable));
-  }
-  diagnosis.findings.clear();
-  for (FlightDiagnosis& flight : diagnosis.flights) {
-    flight.after = flight.before;
-    flight.added.clear();
-    flight.evidence.clear();
-  }
-}
-
-/// Notes on the variables the residual is correlated with that seem to be an input, without a name in the
-/// model, of an effect that was not tested.
-void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, Diagnosis& diagnosis) {
-  if (diagnosis.unexplained.variables.empty()) return;
-  for (const NotTestable& effect : diagnosis.not_testable) {
-    const EffectInfo* const info = effect_named(effect.effect);
-    if (info == nullptr) continue;
-    for (const Quantity input : info->needs) {
-      if (!is_role(input) || model.variables.count(input) != 0) continue;
-      const std::string role(info_of(input).name);
-      const auto variables =
-          files.share().of_each_flight<std::string>([&](std::size_t flight) -> std::string {
-            const std::vector<RoleCandidate> candidates = role_candidates(files[flight], role);
-            return is_sure(candidates) ? candidates.front().variable : "";
-          });
-      for (const EmpiricalPredictor& traced : diagnosis.unexplained.variables) {
-        if (std::any_of(variables.begin(), variables.end(),
-                        [&](const std::string& variable) { return variable != traced.name; }))
-          continue;
-        diagnosis.unnamed_roles.push_back({role, traced.name, effect.effect});
-        diagnosis.notes.push_back(fmt::format(
-            "{} was not tested: write {} = \"{}\" into [variables] of the model; {} seems to be that role",
-            effect.effect, role, traced.name, traced.name));
-      }
-    }
-  }
-}
-
 /// Base coefficients of each added effect of the flow, from the model.
 std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::vector<BaseCoefficient>& base,
                                       const std::vector<std::string>& added) {
@@ -357,39 +252,6 @@ Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoe
       precision[as_index(b)] = std::pow(gps_prior_in_typical_sizes * base[b].usual, -2.0);
   }
   return precision;
-}
-
-/// Adds structure that no effect explains to a diagnosis with its flights, and withdraws the findings if a
-/// line in a variable overrules them. @param extended model with all roles that the flights record
-/// @return chi2 of the best variable in addition to the findings
-double add_unexplained(const Analysis& analysis, const FlightSet& files, const ModelDefinition& model,
-                       const ModelDefinition& extended, const References& references,
-                       const DiagnoseOptions& options, Diagnosis& diagnosis) {
-  if (gps_kind(*references.front())) {
-    doubt_by_atmosphere(diagnosis);
-    diagnosis.notes.emplace_back(
-        "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
-        "same; give a laser or a second system as a further reference");
-    return 0.0;
-  }
-  UnexplainedStructure structure = find_unexplained(
-      analysis, files, model, references, effect_inputs(diagnosis.findings, extended), options,
-      rms_of_flights(analysis, diagnosis.flights, &FlightDiagnosis::after), diagnosis.noise_rms_with_findings,
-      rms_of_flights(analysis, diagnosis.flights, &FlightDiagnosis::drift));
-  diagnosis.unexplained = std::move(structure.found);
-  note_unnamed_inputs(files, extended, diagnosis);
-  for (std::size_t f = 0; f < structure.traced.size(); ++f)
-    diagnosis.flights[f].traced = std::move(structure.traced[f]);
-  if (structure.overrules) {
-    overrule(diagnosis, structure.rival);
-  } else if (!structure.rival.empty()) {
-    diagnosis.rival = structure.rival;
-    diagnosis.notes.push_back(
-        fmt::format("a straight line in {} may be the cause instead of the effects: its "
-                    "probability is between 5 and 95 %",
-                    diagnosis.rival));
-  }
-  return structure.left;
 }
 
 /// @param dates on which a step is tried
@@ -439,11 +301,12 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.own = own_of(analysis, set.base, base);
   diagnosis.flights =
       flights_of(analysis, base, changes(analysis, analysis.result().chosen, diagnosis.is_refitted));
-  diagnosis.residual_rms = rms_of_flights(analysis, diagnosis.flights, &FlightDiagnosis::before);
+  diagnosis.residual_rms = rms_of(
+      analysis.share(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].before; });
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
   const double left = add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
-  if (!flaps.empty())
+  if (!flaps.candidates.empty())
     diagnose_flaps(analysis, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;

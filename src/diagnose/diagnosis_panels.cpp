@@ -54,16 +54,14 @@ std::string column_of(Quantity quantity) {
 bool is_of_reference(const std::string& coefficient) { return coefficient.rfind("reference:", 0) == 0; }
 
 ReportTable variables_table(const Unexplained& unexplained) {
-  ReportTable table;
-  table.title = "Variables that the unexplained structure varies with";
-  table.caption =
+  ReportTable table{
+      "Variables that the unexplained structure varies with",
       "R2: share of the residual's variance that the variable explains, by a smooth curve or by a straight "
       "line, with the most likely drift fitted at the same time. p: probability that the best of all "
       "variables explains as much by a curve if the residuals are shifted in time or have random signs; p "
       "tests the curve, so it can be small although the slope of the line is not significant. No line is "
-      "fitted to an angle, or if the model's coefficients imitate the line.";
-  table.headers = {"variable", "R2, curve", "R2, line", "slope of the line",
-                   "hPa per",  "p",         "formula",  "what"};
+      "fitted to an angle, or if the model's coefficients imitate the line.",
+      {"variable", "R2, curve", "R2, line", "slope of the line", "hPa per", "p", "formula", "what"}};
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     const bool has_line = variable.slope_error > 0.0;
     table.rows.push_back({variable.name, percent(variable.r2), has_line ? percent(variable.linear_r2) : "",
@@ -181,7 +179,11 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "Switch an effect on, or move its coefficient: residual, table, steps and figures follow, and the "
       "coefficients that were not moved by hand are fitted again. The fit is linear about the current model, "
       "with the weights of pcor refit. It equals the result of pcor refit if the residual is linear in the "
-      "coefficients, and nearly equals it otherwise, for example for a lag. The decrease of chi2 is in units "
+      "coefficients, and nearly equals it otherwise, for example for a lag. Standard errors here are those "
+      "of "
+      "the noise with its drift; pcor refit adds the misfit of the model and the calibration of the "
+      "reference. "
+      "The decrease of chi2 is in units "
       "of the noise with its drift: for one fitted coefficient, the square of its change over its error. The "
       "search gives less weight to slow changes, so its chi2 differs. ";
   const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);

@@ -88,10 +88,10 @@ Info numbers_of(const Diagnosis& diagnosis) {
 }
 
 BarPanel ranking_bars(const Diagnosis& diagnosis) {
-  BarPanel bars;
-  bars.title = "Ranking";
-  bars.caption = "Decrease of chi2 by each effect that was found, and by each rival (\"or\") instead of it.";
-  bars.axis = "fall of chi2";
+  BarPanel bars{"Ranking",
+                "Decrease of chi2 by each effect that was found, and by each rival (\"or\") instead of it.",
+                {},
+                "fall of chi2"};
   for (const Finding& finding : diagnosis.findings) {
     bars.bars.push_back({finding.id(), finding.chi2});
     for (const Alias& alias : finding.aliases)
@@ -105,13 +105,11 @@ BarPanel ranking_bars(const Diagnosis& diagnosis) {
 std::string ratio_cell(double ratio) { return ratio == 0.0 ? "" : ratio_text(ratio); }
 
 ReportTable ranking_table(const Diagnosis& diagnosis) {
-  ReportTable table;
-  table.title = "Findings and their rivals";
-  table.caption =
+  ReportTable table{
+      "Findings and their rivals",
       "A rival (\"or\") explains the flights as well as the effect above it. Correlation: between the two "
-      "effects after the model's own coefficients. Size / usual: ratio of the coefficient to its usual size.";
-  table.headers = {"",    "effect", "coefficients", "rms, hPa", "fall of chi2", "correlation", "size / usual",
-                   "what"};
+      "effects after the model's own coefficients. Size / usual: ratio of the coefficient to its usual size.",
+      {"", "effect", "coefficients", "rms, hPa", "fall of chi2", "correlation", "size / usual", "what"}};
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
     const Finding& finding = diagnosis.findings[i];
     table.rows.push_back({std::to_string(i + 1), finding.id(), estimates_text(finding.estimates),
@@ -127,10 +125,9 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
 }
 
 ReportTable evidence_table(const std::vector<Finding>& findings) {
-  ReportTable table;
-  table.title = "Where the evidence lies";
-  table.caption = "Time ranges with most of the evidence for each effect.";
-  table.headers = {"effect", "flight", "begin (UTC)", "end", "share", "regimes"};
+  ReportTable table{"Where the evidence lies",
+                    "Time ranges with most of the evidence for each effect.",
+                    {"effect", "flight", "begin (UTC)", "end", "share", "regimes"}};
   for (const Finding& finding : findings) {
     for (const Evidence& evidence : finding.evidence) {
       table.rows.push_back({finding.id(), evidence.flight, utc_text(evidence.begin),

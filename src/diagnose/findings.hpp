@@ -10,6 +10,11 @@ namespace pcor::internal {
 /// Findings of an analysis without advice, sorted by decreasing evidence.
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates);
 
+/// Adds to every finding with aliases the repeated regime that would separate it from them, and the
+/// probability of success.
+void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
+            std::vector<Finding>& findings);
+
 /// Evidence for each finding in each minute of all flights: the gain in chi2, whose sum is its chi2.
 std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis);
 

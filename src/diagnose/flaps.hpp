@@ -16,11 +16,9 @@ struct FlapsCandidates {
   std::vector<Candidate> candidates{};
   std::vector<bool> reads_flaps{};         ///< one per candidate; the others are rivals
   std::vector<Eigen::MatrixXf> columns{};  ///< one per flight; no rows for remote flights
-
-  bool empty() const { return candidates.empty(); }
 };
 
-/// Empty if too few samples have flaps out.
+/// Without candidates if too few samples have flaps out.
 FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns);
 
 /// Tests them together with the model and the findings of `analysis`, and adds the result or its upper limit

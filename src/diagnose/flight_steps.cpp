@@ -12,17 +12,6 @@ namespace {
 
 constexpr double min_eigenvalue = 1e-9;
 
-/// Contribution of a flight to the sums over all flights.
-struct FlightSums {
-  std::size_t rows = 0;
-  Eigen::MatrixXd sums{};  // products of whitened columns, a constant and the residual
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(rows, sums);
-  }
-};
-
 /// Flight means after elimination of a model, and their covariances. The means contain no part that the model
 /// explains, whether common to all flights or a step between them.
 struct Means {
@@ -121,7 +110,10 @@ std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const 
                                             const std::vector<Eigen::VectorXd>& residuals,
                                             const NoiseModel& noise) {
   std::vector<FlightOffset> steps(bins.size());
-  const auto found = share.of_each_flight<FlightSums>([&](std::size_t f) {
+  const auto rows = share.sum_of_each_flight<std::size_t>([&](std::size_t f) { return bins[f].size(); });
+  // Products of whitened columns, a constant and the residual; empty for a flight without bins.
+  auto found = share.of_each_flight<Eigen::MatrixXd>([&](std::size_t f) -> Eigen::MatrixXd {
+    if (bins[f].size() == 0) return {};
     // A model without a column is one with a column of zeros.
     const Eigen::Index model = std::max<Eigen::Index>(columns[f].cols(), 1);
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(columns[f].rows(), model + 2);
@@ -129,16 +121,14 @@ std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const 
     all.col(model).setOnes();
     all.col(model + 1) = residuals[f];
     const Eigen::MatrixXd white = whitened(all, bins[f], noise, f);
-    return FlightSums{bins[f].size(), white.transpose() * white};
+    return white.transpose() * white;
   });
   std::vector<std::size_t> flights;
   std::vector<Eigen::MatrixXd> sums;
-  std::size_t rows = 0;
   for (std::size_t f = 0; f < found.size(); ++f) {
-    if (found[f].rows == 0) continue;
-    rows += found[f].rows;
+    if (found[f].size() == 0) continue;
     flights.push_back(f);
-    sums.push_back(found[f].sums);
+    sums.push_back(std::move(found[f]));
   }
   if (flights.size() < 2) return steps;
   const Means means = find_means(sums, static_cast<double>(rows));

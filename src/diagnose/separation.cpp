@@ -5,12 +5,76 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <pcor/effects/catalogue.hpp>
 #include "base/phrasing.hpp"
+#include "parallel/packed.hpp"
 
 namespace pcor::internal {
 namespace {
+
+/// All intervals of a regime.
+struct RegimeSum {
+  Eigen::MatrixXd information{};
+  double intervals = 0.0;
+  double duration = 0.0;  ///< s
+  std::string flight{};
+  double longest = 0.0;  ///< duration on that flight, s
+
+  RegimeSum& operator+=(const RegimeSum& other) {
+    if (other.information.size() == 0) return *this;
+    if (information.size() == 0) return *this = other;
+    information += other.information;
+    intervals += other.intervals;
+    duration += other.duration;
+    if (other.longest > longest) {
+      flight = other.flight;
+      longest = other.longest;
+    }
+    return *this;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(information, intervals, duration, flight, longest);
+  }
+};
+
+/// Whether a pilot can repeat the regime. Events on a level leg other than level flight cannot be repeated.
+bool can_be_repeated(Regime regime) { return regime >= Regime::climb && regime != Regime::level; }
+
+RegimeSum sum_of(Regime regime, const WhitenedSystem& scores, std::size_t number,
+                 const FlightInBins& flight) {
+  const Eigen::MatrixXd& rows = scores.rows[number];
+  constexpr auto phases = static_cast<std::size_t>(Regime::level) + 1;
+  const FlightSamples& samples = *flight.columns.samples;
+  const std::vector<double>& time = flight.bins.time();
+  const std::vector<RegimeSet> regimes = regimes_of_samples(time, samples.intervals);
+  RegimeSum sum;
+  for (const Interval& interval : samples.intervals) {
+    if (interval.regime != regime) continue;
+    std::vector<Eigen::Index> own;
+    double within = 0.0;
+    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+      const auto i = static_cast<std::size_t>(scores.bin_of(number, row));
+      if (time[i] < interval.begin || time[i] >= interval.end) continue;
+      within += 1.0;
+      if (!is_phase(regime) || (regimes[i] >> phases).none()) own.push_back(row);
+    }
+    if (own.empty()) continue;
+    const Eigen::MatrixXd columns = rows(own, Eigen::seqN(0, rows.cols() - 1));
+    RegimeSum part{columns.transpose() * columns};
+    if (flight.columns.reference == 0) {  // an interval counts once for all references
+      part.intervals = 1.0;
+      part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) / within;
+    }
+    sum += part;
+  }
+  sum.flight = samples.name;
+  sum.longest = sum.duration;
+  return sum;
+}
 
 constexpr double margin = 9.0;  // chi2, as for aliases
 constexpr double enough_power = 0.95;
@@ -45,6 +109,21 @@ std::string intervals_text(Regime regime, int count) {
 }
 
 }  // namespace
+
+std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
+                                       const std::function<FlightInBins(std::size_t flight)>& flight) {
+  std::vector<FlownRegime> regimes;
+  for (std::size_t r = 0; r < regime_count; ++r) {
+    const auto regime = static_cast<Regime>(r);
+    if (!can_be_repeated(regime)) continue;
+    auto sum = scores.share.sum_of_each_flight<RegimeSum>(
+        [&](std::size_t f) { return sum_of(regime, scores, f, flight(f)); });
+    if (sum.intervals == 0.0) continue;
+    regimes.push_back(
+        {regime, sum.duration / sum.intervals, sum.information / sum.intervals, std::move(sum.flight)});
+  }
+  return regimes;
+}
 
 Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem& rivalry) {
   const double now = min_distinct(rivalry, rivalry.information);

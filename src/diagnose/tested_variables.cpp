@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include <pcor/physics/constants.hpp>
+#include "base/phrasing.hpp"
 #include "numerics/missing.hpp"
 #include "parallel/flight_partition.hpp"
 
@@ -127,7 +130,42 @@ TestedVariable specific_excess_power(const std::vector<FlightColumns>& flights) 
   return variable;
 }
 
+using InputsOfVariables = std::map<std::string, std::vector<std::string>>;  // keyed by computed variable
+
+/// The names and all their inputs, recursively. Some files contain circular dependencies.
+std::set<std::string> with_inputs(const InputsOfVariables& inputs, std::set<std::string> names) {
+  std::vector<std::string> open(names.begin(), names.end());
+  while (!open.empty()) {
+    const auto found = inputs.find(open.back());
+    open.pop_back();
+    if (found == inputs.end()) continue;
+    for (const std::string& input : found->second) {
+      if (names.insert(input).second) open.push_back(input);
+    }
+  }
+  return names;
+}
+
 }  // namespace
+
+std::set<std::string> computed_from(const Flight& flight, const std::set<std::string>& sensors) {
+  InputsOfVariables inputs;
+  for (const std::string& name : flight.variables()) {
+    std::vector<std::string> words = split_words(flight.variable(name).attribute("Dependencies"));
+    if (!words.empty()) words.erase(words.begin());  // number of inputs
+    inputs[name] = std::move(words);
+  }
+  const std::set<std::string> measured = with_inputs(inputs, sensors);
+  std::set<std::string> computed;
+  for (const std::string& name : flight.variables()) {
+    if (measured.count(name) > 0) continue;
+    const std::set<std::string> all = with_inputs(inputs, {name});
+    if (std::any_of(all.begin(), all.end(),
+                    [&](const std::string& input) { return measured.count(input) > 0; }))
+      computed.insert(name);
+  }
+  return computed;
+}
 
 std::vector<const double*> TestedVariable::pointers() const {
   std::vector<const double*> result;

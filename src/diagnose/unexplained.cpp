@@ -4,13 +4,16 @@
 #include <cereal/types/set.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numeric>
 #include <set>
 #include <utility>
 
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
 #include <pcor/numerics/line_fit.hpp>
-#include "diagnose/dependencies.hpp"
+#include "campaign/gps_rows.hpp"
 #include "diagnose/flight_steps.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/structure.hpp"
@@ -18,6 +21,7 @@
 #include "numerics/chi_squared.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "roles/role_evidence.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -286,6 +290,46 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
   }
 }
 
+/// Inputs of chosen effects. A variable that an effect reads is not a rival of it.
+struct EffectInputs {
+  std::set<Quantity> quantities{};
+  std::set<std::string> variables{};
+};
+
+/// Inputs of the effects of findings on either system; an angle is also read as its differential pressure.
+EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefinition& model) {
+  EffectInputs inputs;
+  const auto read = [&](Quantity quantity) {
+    inputs.quantities.insert(quantity);
+    inputs.variables.insert(model.variable_of(quantity));
+  };
+  const auto read_with_angles = [&](Quantity need) {
+    read(need);
+    if (need == Quantity::attack || need == Quantity::attack_ratio) {
+      read(Quantity::attack);
+      read(Quantity::attack_differential_pressure);
+    }
+    if (need == Quantity::sideslip || need == Quantity::sideslip_ratio) {
+      read(Quantity::sideslip);
+      read(Quantity::sideslip_differential_pressure);
+    }
+  };
+  for (const Finding& finding : findings) {
+    if (finding.effect.is_formula()) {
+      const auto formula = Formula::parse(finding.effect.formula, finding.effect.parameter_names, nullptr);
+      for (const std::string& name : formula ? formula->variables() : std::vector<std::string>()) {
+        inputs.variables.insert(name);
+        if (quantity_named(name) != Quantity::count) read_with_angles(quantity_named(name));
+      }
+      continue;
+    }
+    for (const Quantity need : effect_named(finding.effect.id)->needs) {
+      if (need != Quantity::count) read_with_angles(need);
+    }
+  }
+  return inputs;
+}
+
 /// Whether a variable is another record of a quantity: the two have a correlation above 0.95.
 bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity quantity) {
   constexpr double image = 0.95;
@@ -355,7 +399,8 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
 }
 
 /// Indices of variables with significant structure, without duplicates.
-std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& result) {
+std::vector<std::size_t> add_traced(const Tested& tested, Diagnosis& diagnosis) {
+  std::vector<EmpiricalPredictor>& variables = diagnosis.unexplained.variables;
   const std::vector<Structure>& structures = tested.test.structures();
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < structures.size(); ++i) {
@@ -369,13 +414,14 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
   std::set<std::string> named;
   std::vector<std::size_t> numbers;
   for (const std::size_t i : order) {
-    if (result.found.variables.size() == max_variables) break;
+    if (variables.size() == max_variables) break;
     if (!named.insert(structures[i].name).second) continue;
-    result.found.variables.push_back(
+    variables.push_back(
         predictor_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
     numbers.push_back(i);
-    if (!result.traced.empty()) continue;
-    for (const auto& values : tested.variables[i]->values) result.traced.push_back(*values);
+    if (numbers.size() > 1) continue;
+    for (std::size_t f = 0; f < diagnosis.flights.size(); ++f)
+      diagnosis.flights[f].traced = *tested.variables[i]->values[f];
   }
   return numbers;
 }
@@ -394,14 +440,77 @@ std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vec
   return steps;
 }
 
+/// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
+/// clearly predict held-out parts may be one.
+void doubt_by_atmosphere(Diagnosis& diagnosis) {
+  constexpr double clear = 3.0;  // standard errors
+  for (Finding& finding : diagnosis.findings) {
+    if (finding.gain > clear * finding.gain_error) continue;
+    finding.rival = "the atmosphere";
+    diagnosis.notes.push_back(warning_note(fmt::format(
+        "variations of the atmosphere may be the cause instead of {}: it decreases chi2 of held-out parts "
+        "by {:.0f} +- {:.0f}; give a laser or a second system as a further reference",
+        finding.id(), finding.gain, finding.gain_error)));
+  }
+}
+
+/// Withdraws the findings if a straight line in one variable of the files is more likely than they are.
+void overrule(Diagnosis& diagnosis, const std::string& variable) {
+  for (const Finding& finding : diagnosis.findings) {
+    diagnosis.notes.push_back(
+        fmt::format("{} is not reported as the cause: a straight line in {} is more "
+                    "likely, with a probability above 95 %",
+                    finding.id(), variable));
+  }
+  diagnosis.findings.clear();
+  for (FlightDiagnosis& flight : diagnosis.flights) {
+    flight.after = flight.before;
+    flight.added.clear();
+    flight.evidence.clear();
+  }
+}
+
+/// Notes on the variables the residual is correlated with that seem to be an input, without a name in the
+/// model, of an effect that was not tested.
+void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, Diagnosis& diagnosis) {
+  if (diagnosis.unexplained.variables.empty()) return;
+  for (const NotTestable& effect : diagnosis.not_testable) {
+    const EffectInfo* const info = effect_named(effect.effect);
+    if (info == nullptr) continue;
+    for (const Quantity input : info->needs) {
+      if (!is_role(input) || model.variables.count(input) != 0) continue;
+      const std::string role(info_of(input).name);
+      const auto variables =
+          files.share().of_each_flight<std::string>([&](std::size_t flight) -> std::string {
+            const std::vector<RoleCandidate> candidates = role_candidates(files[flight], role);
+            return is_sure(candidates) ? candidates.front().variable : "";
+          });
+      for (const EmpiricalPredictor& traced : diagnosis.unexplained.variables) {
+        if (std::any_of(variables.begin(), variables.end(),
+                        [&](const std::string& variable) { return variable != traced.name; }))
+          continue;
+        diagnosis.unnamed_roles.push_back({role, traced.name, effect.effect});
+        diagnosis.notes.push_back(fmt::format(
+            "{} was not tested: write {} = \"{}\" into [variables] of the model; {} seems to be that role",
+            effect.effect, role, traced.name, traced.name));
+      }
+    }
+  }
+}
+
 }  // namespace
 
-UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
-                                      const ModelDefinition& model, const References& references,
-                                      const EffectInputs& inputs, const DiagnoseOptions& options,
-                                      double residual_rms, double noise_rms, double drift_rms) {
-  UnexplainedStructure result;
-  Unexplained& found = result.found;
+double add_unexplained(const Analysis& analysis, const FlightSet& files, const ModelDefinition& model,
+                       const ModelDefinition& extended, const References& references,
+                       const DiagnoseOptions& options, Diagnosis& diagnosis) {
+  if (gps_kind(*references.front())) {
+    doubt_by_atmosphere(diagnosis);
+    diagnosis.notes.emplace_back(
+        "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
+        "same; give a laser or a second system as a further reference");
+    return 0.0;
+  }
+  Unexplained& found = diagnosis.unexplained;
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const std::vector<std::vector<double>> after = residuals_after(analysis, chosen);
   const std::vector<TestedVariable> variables =
@@ -409,37 +518,75 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
 
   Tested tested(analysis, chosen, variables, options.seed);
   const double by_variables = tested.p_value();
+  double left = 0.0;
   for (const Structure& structure : tested.test.structures()) {
-    if (by_variables < chance) result.left = std::max(result.left, structure.gain - structure.freedom);
+    if (by_variables < chance) left = std::max(left, structure.gain - structure.freedom);
   }
-  const LineRival line = chosen.empty() ? LineRival() : best_line(analysis, chosen, tested, inputs);
-  result.overrules = line.log_odds > sure;
-  if (line.log_odds > -sure) result.rival = line.variable;
-  if (result.overrules) tested = Tested(analysis, {}, variables, options.seed);
+  LineRival line;
+  if (!chosen.empty())
+    line = best_line(analysis, chosen, tested, effect_inputs(diagnosis.findings, extended));
+  const bool overrules = line.log_odds > sure;
+  if (overrules) tested = Tested(analysis, {}, variables, options.seed);
 
-  found.drift_rms = drift_rms;
+  const auto rms_of_flights = [&](std::vector<double> FlightDiagnosis::*series) {
+    return rms_of(
+        analysis.share(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].*series; });
+  };
+  found.drift_rms = rms_of_flights(&FlightDiagnosis::drift);
   const bool drifts = analysis.drift_gain() > min_drift_gain && found.drift_rms > max_usual_drift;
   found.steps = steps_between(analysis, chosen);
-  found.significant = by_variables < chance || drifts || !found.steps.empty() || result.overrules;
-  if (!found.significant) return result;
+  found.significant = by_variables < chance || drifts || !found.steps.empty() || overrules;
+  if (found.significant) {
+    const std::vector<std::vector<double>> residuals = overrules ? residuals_after(analysis, {}) : after;
+    const double rms = overrules
+                           ? rms_of(
+                                 analysis.share(), [&](std::size_t f) -> const auto& { return residuals[f]; })
+                           : rms_of_flights(&FlightDiagnosis::after);
+    const double noise_rms = diagnosis.noise_rms_with_findings;
+    const std::vector<std::size_t> traced = add_traced(tested, diagnosis);
+    // Retained effects describe a part of every reference that the lines do not include.
+    if (chosen.empty() || overrules) find_places(analysis, tested, traced, references, found.variables);
+    // Part beyond the noise; at least the drift and the part that the best variable explains.
+    found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
+    if (!found.variables.empty())
+      found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);
+    // A regime is named only if its residual clearly exceeds that of all samples.
+    found.regime = worst_regime(analysis, residuals, std::max(noise_rms, 1.25 * rms));
+    found.p_value =
+        std::min(tested.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
+    for (const FlightOffset& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
+  }
+  note_unnamed_inputs(files, extended, diagnosis);
+  if (overrules) {
+    overrule(diagnosis, line.variable);
+  } else if (line.log_odds > -sure) {
+    diagnosis.rival = line.variable;
+    diagnosis.notes.push_back(
+        fmt::format("a straight line in {} may be the cause instead of the effects: its "
+                    "probability is between 5 and 95 %",
+                    diagnosis.rival));
+  }
+  return left;
+}
 
-  const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;
-  double rms = residual_rms;
-  if (result.overrules)
-    rms = rms_of(
-        analysis.share(), [&left](std::size_t f) -> const auto& { return left[f]; });
-  const std::vector<std::size_t> traced = add_traced(tested, result);
-  // Retained effects describe a part of every reference that the lines do not include.
-  if (chosen.empty() || result.overrules) find_places(analysis, tested, traced, references, found.variables);
-  // Part beyond the noise; at least the drift and the part that the best variable explains.
-  found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
-  if (!found.variables.empty()) found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);
-  // A regime is named only if its residual clearly exceeds that of all samples.
-  found.regime = worst_regime(analysis, left, std::max(noise_rms, 1.25 * rms));
-  found.p_value =
-      std::min(tested.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
-  for (const FlightOffset& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
-  return result;
+std::string id_of_trace(const std::string& variable) {
+  std::string id = "traced-";
+  for (const unsigned char letter : variable)
+    id += std::isalnum(letter) != 0 ? static_cast<char>(std::tolower(letter)) : '-';
+  return id;
+}
+
+ModelEffect effect_of(const EmpiricalPredictor& variable, const std::string& flights) {
+  ModelEffect effect;
+  effect.id = id_of_trace(variable.name);
+  effect.parameter_names = {"k"};
+  effect.parameters = {variable.slope};
+  effect.formula = variable.formula;
+  effect.location = variable.location;
+  effect.unit = "hPa";
+  effect.source = fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}",
+                              flights, 100.0 * variable.r2, variable.p_value);
+  return effect;
 }
 
 }  // namespace pcor::internal

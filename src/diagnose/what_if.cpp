@@ -6,18 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
-#include <numeric>
 #include <utility>
 #include <variant>
 
 #include <pcor/base/error.hpp>
-#include "campaign/linear_rows.hpp"
-#include "campaign/model_parameters.hpp"
 #include "diagnose/flight_columns.hpp"
-#include "diagnose/separation.hpp"
 #include "diagnose/step_dates.hpp"
-#include "diagnose/traced_effect.hpp"
+#include "diagnose/unexplained.hpp"
 #include "diagnose/what_if_fit.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -138,46 +133,6 @@ TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const T
       });
 }
 
-/// Residual of a flight with effects at large coefficients, as a refit with them computes it.
-ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, const FlightColumns& flight,
-                         const std::vector<std::size_t>& groups) {
-  const Reference& reference = *set.references[flight.reference];
-  if (!reference.is_of_one_sample()) return {};
-  ModelDefinition with = model;
-  with.variables = set.extended.variables;
-  with.units = set.extended.units;
-  // Residual parameter of each free coefficient, and its index in the panel.
-  std::vector<std::size_t> free = free_parameters(model);
-  std::vector<std::size_t> number(free.size());
-  std::iota(number.begin(), number.end(), 0);
-  for (const std::size_t group : groups) {
-    const Candidate& candidate = set.candidates[group];
-    if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
-    for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
-      free.push_back(parameter_count(with.model) + candidate.tested[k].index);
-      number.push_back(set.base.size() + set.first_column(group) + k);
-    }
-    with.model.effects.push_back(candidate.effect);
-  }
-  with.fits.resize(with.model.effects.size());
-  std::vector<std::size_t> records;
-  for (std::size_t i = 0; i < flight.given.size(); ++i) {
-    if (!std::isnan(flight.given[i])) records.push_back(i);
-  }
-  const auto rows =
-      std::make_shared<const LinearRows>(Residuals(flight.samples, with, reference, flight.mask), with,
-                                         reference, RowsSetup{Inputs::none, free});
-  return [=](const Eigen::VectorXd& values) -> std::vector<double> {
-    std::vector<double> parameters = rows->residuals().parameters();
-    for (std::size_t k = 0; k < free.size(); ++k) parameters[free[k]] = values[as_index(number[k])];
-    const Eigen::VectorXd found = rows->evaluate(records, parameters.data(), {});
-    if (!found.allFinite()) return {};
-    std::vector<double> result(rows->residuals().size(), nan);
-    for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[as_index(k)];
-    return result;
-  };
-}
-
 /// All columns of a flight by records, in double precision.
 std::vector<std::vector<double>> by_records(const FlightColumns& flight) {
   std::vector<std::vector<double>> columns;
@@ -229,35 +184,6 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
   if (reads_flaps(candidate.effect, flaps_variable))
     return "Here only samples with flaps in are used; a refit with it also uses samples with flaps out.";
   return "";
-}
-
-/// Regime that would separate each pair of effects, each at its size alone.
-std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const std::vector<Candidate>& candidates) {
-  std::vector<WhatIfSeparation> separations;
-  const auto columns_of = [&fit](std::size_t effect) { return indices_of(fit.groups()[effect], fit.base()); };
-  for (std::size_t effect = 0; effect < candidates.size(); ++effect) {
-    if (candidates[effect].is_shared) continue;  // its columns repeat those of another
-    const Eigen::VectorXd alone = fit.fitted({effect}).values;
-    const std::vector<Eigen::Index> own = columns_of(effect);
-    SeparationProblem rivalry{fit.information(), fit.variance({effect}), own, alone(own), {}};
-    for (std::size_t rival = 0; rival < candidates.size(); ++rival) {
-      if (rival == effect || candidates[rival].is_shared) continue;
-      std::vector<Eigen::Index> rest = fit.own();
-      const std::vector<Eigen::Index> others = columns_of(rival);
-      rest.insert(rest.end(), others.begin(), others.end());
-      rivalry.rests = {std::move(rest)};
-      const std::string& id = candidates[effect].id;
-      const std::string& other = candidates[rival].id;
-      separations.push_back(
-          {effect, rival,
-           is_separated(rivalry)
-               ? fmt::format(
-                     "these flights separate {} from {} at the size found, with a probability above 95 %", id,
-                     other)
-               : text_of(best_plan(fit.regimes(), rivalry), id, candidates[effect].effect, {other})});
-    }
-  }
-  return separations;
 }
 
 /// Whether the provenance of a model states a fit to one of the flights.
@@ -401,19 +327,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     result.effects.push_back(set.candidates[e].effect);
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
-  const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
-                      groups_of(set, set.candidates), are_found, options.is_robust,
-                      [&](const FlightColumns& flight, const std::vector<std::size_t>& groups) {
-                        return residual_with(model, set, flight, groups);
-                      });
-  fit.describe(panel.coefficients);
-  panel.weights = fit.weights();
-  panel.alike = fit.alike();
-  panel.outliers = std::move(panel.alike.back());
-  panel.alike.pop_back();
-  for (const WhatIfSums& sums : fit.held_out()) {
-    if (sums.samples > 0.0) panel.held_out = sums;
-  }
+  const WhatIfFit fit(model, set, std::move(columns), std::move(others), are_found, options.is_robust, panel);
   const auto is_shown = [&](std::size_t file) {
     const auto& requested_flights = options.diagnose.series_of;
     return !requested_flights || file >= flights.size() ||
@@ -423,7 +337,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     result.flights.push_back({flight.samples, by_records(flight)});
   for (const FlightColumns& flight : shown(fit.others(), is_shown)) add_held_out(result.flights, flight);
   files.require_unchanged();
-  panel.separations = separations_of(fit, set.candidates);
+  panel.separations = fit.separations(set.candidates);
   return result;
 }
 

@@ -1,9 +1,15 @@
 #include "diagnose/what_if_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <utility>
 
+#include "campaign/linear_rows.hpp"
+#include "campaign/model_parameters.hpp"
 #include "diagnose/analysis.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -75,6 +81,46 @@ Eigen::VectorXd row_of(const FlightColumns& flight, std::size_t record) {
   return row;
 }
 
+/// Residual of a flight with effects at large coefficients, as a refit with them computes it.
+ResidualAt residual_with(const ModelDefinition& model, const CandidateSet& set, const FlightColumns& flight,
+                         const std::vector<std::size_t>& groups) {
+  const Reference& reference = *set.references[flight.reference];
+  if (!reference.is_of_one_sample()) return {};
+  ModelDefinition with = model;
+  with.variables = set.extended.variables;
+  with.units = set.extended.units;
+  // Residual parameter of each free coefficient, and its index in the panel.
+  std::vector<std::size_t> free = free_parameters(model);
+  std::vector<std::size_t> number(free.size());
+  std::iota(number.begin(), number.end(), 0);
+  for (const std::size_t group : groups) {
+    const Candidate& candidate = set.candidates[group];
+    if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
+    for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
+      free.push_back(parameter_count(with.model) + candidate.tested[k].index);
+      number.push_back(set.base.size() + set.first_column(group) + k);
+    }
+    with.model.effects.push_back(candidate.effect);
+  }
+  with.fits.resize(with.model.effects.size());
+  std::vector<std::size_t> records;
+  for (std::size_t i = 0; i < flight.given.size(); ++i) {
+    if (!std::isnan(flight.given[i])) records.push_back(i);
+  }
+  const auto rows =
+      std::make_shared<const LinearRows>(Residuals(flight.samples, with, reference, flight.mask), with,
+                                         reference, RowsSetup{Inputs::none, free});
+  return [=](const Eigen::VectorXd& values) -> std::vector<double> {
+    std::vector<double> parameters = rows->residuals().parameters();
+    for (std::size_t k = 0; k < free.size(); ++k) parameters[free[k]] = values[as_index(number[k])];
+    const Eigen::VectorXd found = rows->evaluate(records, parameters.data(), {});
+    if (!found.allFinite()) return {};
+    std::vector<double> result(rows->residuals().size(), nan);
+    for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[as_index(k)];
+    return result;
+  };
+}
+
 /// Values row by row.
 std::vector<double> lower_triangle(const Eigen::MatrixXd& matrix) {
   return upper_triangle(matrix.transpose());
@@ -89,15 +135,15 @@ std::vector<WhatIfSums> as_sums(const PartialSums& sums) {
 
 }  // namespace
 
-WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
-                     const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-                     const std::vector<std::size_t>& found, bool is_robust, const ResidualWith& residual_with)
-    : flights_(std::move(flights)), others_(std::move(others)), groups_(std::move(groups)) {
+WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, TeamColumns flights,
+                     TeamColumns others, const std::vector<std::size_t>& found, bool is_robust,
+                     WhatIfPanel& panel)
+    : flights_(std::move(flights)), others_(std::move(others)), groups_(groups_of(set, set.candidates)) {
   base_ = flights_.flights.front().base.cols();
-  given_.resize(as_index(coefficients.size()));
+  given_.resize(as_index(panel.coefficients.size()));
   start_.resize(given_.size());
   for (Eigen::Index c = 0; c < given_.size(); ++c) {
-    const WhatIfCoefficient& coefficient = coefficients[static_cast<std::size_t>(c)];
+    const WhatIfCoefficient& coefficient = panel.coefficients[static_cast<std::size_t>(c)];
     start_[c] = coefficient.start;
     given_[c] = coefficient.given - coefficient.start;
     if (c < base_ && !coefficient.fixed) own_.push_back(c);
@@ -108,7 +154,7 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
         flight.given[i] += flight.base.row(as_index(i)).cast<double>().dot(given_.head(base_));
     }
   }
-  held_out_ = as_sums(others_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  const auto outside = others_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
     const FlightColumns& flight = others_.flights[f];
     PartialSums sums(1, given_.size() + 1);
     for (std::size_t i = 0; i < flight.given.size(); ++i) {
@@ -116,12 +162,16 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
       if (row.allFinite()) sums.add(0, row);
     }
     return sums;
-  }));
+  });
+  for (const WhatIfSums& sums : as_sums(outside)) {
+    if (sums.samples > 0.0) panel.held_out = sums;
+  }
   for (const ColumnGroup& group : groups_) identifiable_.push_back(indices_of(group, base_));
-  for (const std::vector<std::size_t>& some : subsets_of(found)) find_sums(some, is_robust, residual_with);
-  alike_ = as_sums(flights_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  for (const std::vector<std::size_t>& some : subsets_of(found))
+    panel.weights.push_back(find_sums(model, set, some, is_robust));
+  panel.alike = as_sums(flights_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
     const FlightColumns& flight = flights_.flights[f];
-    PartialSums sums(held_out_parts + 1, given_.size() + 1);
+    PartialSums sums(held_out_parts + 1, given_.size() + 1);  // the outliers last
     if (flight.reference != 0) return sums;
     std::vector<bool> counts(flight.given.size(), false);
     for (const std::size_t record : binned_.bins[f].records()) counts[record] = true;
@@ -132,6 +182,9 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
     }
     return sums;
   }));
+  panel.outliers = std::move(panel.alike.back());
+  panel.alike.pop_back();
+  describe(panel.coefficients);
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
@@ -198,8 +251,8 @@ WhitenedSystem WhatIfFit::least_squares(const Indices& free, bool is_robust, Eig
   return system;
 }
 
-void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
-                          const ResidualWith& residual_with) {
+WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const CandidateSet& set,
+                                   const std::vector<std::size_t>& found, bool is_robust) {
   const FlightPartition& share = flights_.share;
   const std::vector<FlightColumns>& flights = flights_.flights;
   std::vector<ResidualAt> residual_at(flights.size());
@@ -211,7 +264,7 @@ void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
   for (int round = 0; round < rounds; ++round) {
     binned_ = in_bins(share, flights, [&](std::size_t f) {
       if (round == 0) return flights[f].given;
-      if (round == 1) residual_at[f] = residual_with(flights[f], found);
+      if (round == 1) residual_at[f] = residual_with(model, set, flights[f], found);
       const std::vector<double> residual = residual_for(flights[f], values, residual_at[f]);
       return is_robust ? calm(flights[f], residual, values) : residual;
     });
@@ -246,17 +299,13 @@ void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
                system.rows[f].row(as_index(i)).transpose());
     return sums;
   });
-  weights_.push_back({found, as_sums(parts), lower_triangle(score_covariance)});
   regimes_ = flown_regimes(with_noise, [&](std::size_t f) {
     return FlightInBins{flights[f], binned_.bins[f]};
   });
   least_squares_ = system.information;
   information_ = with_noise.information;
   row_count_ = static_cast<double>(with_noise.row_count);
-}
-
-Eigen::MatrixXd WhatIfFit::information() const {
-  return information_.topLeftCorner(given_.size(), given_.size());
+  return {found, as_sums(parts), lower_triangle(score_covariance)};
 }
 
 double WhatIfFit::variance(const std::vector<std::size_t>& groups) const {
@@ -292,6 +341,34 @@ void WhatIfFit::describe(std::vector<WhatIfCoefficient>& coefficients) const {
       grow(c, std::abs(with.values[c]) + surely * with.errors[c]);
     }
   }
+}
+
+std::vector<WhatIfSeparation> WhatIfFit::separations(const std::vector<Candidate>& candidates) const {
+  const Eigen::MatrixXd information = information_.topLeftCorner(given_.size(), given_.size());
+  std::vector<WhatIfSeparation> separations;
+  for (std::size_t effect = 0; effect < candidates.size(); ++effect) {
+    if (candidates[effect].is_shared) continue;  // its columns repeat those of another
+    const Eigen::VectorXd alone = fitted({effect}).values;
+    const Indices own = indices_of(groups_[effect], base_);
+    SeparationProblem rivalry{information, variance({effect}), own, alone(own), {}};
+    for (std::size_t rival = 0; rival < candidates.size(); ++rival) {
+      if (rival == effect || candidates[rival].is_shared) continue;
+      Indices rest = own_;
+      const Indices others = indices_of(groups_[rival], base_);
+      rest.insert(rest.end(), others.begin(), others.end());
+      rivalry.rests = {std::move(rest)};
+      const std::string& id = candidates[effect].id;
+      const std::string& other = candidates[rival].id;
+      separations.push_back(
+          {effect, rival,
+           is_separated(rivalry)
+               ? fmt::format(
+                     "these flights separate {} from {} at the size found, with a probability above 95 %", id,
+                     other)
+               : text_of(best_plan(regimes_, rivalry), id, candidates[effect].effect, {other})});
+    }
+  }
+  return separations;
 }
 
 }  // namespace pcor::internal

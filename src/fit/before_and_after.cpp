@@ -6,7 +6,6 @@
 #include "base/phrasing.hpp"
 #include "fit/loss_function.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/masks.hpp"
 #include "residuals/packed_residuals.hpp"
 
 namespace pcor {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <vector>
 
 #include <pcor/base/note.hpp>
 #include <pcor/regimes/regimes.hpp>

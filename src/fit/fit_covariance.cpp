@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
@@ -21,33 +20,32 @@ constexpr double min_part = 120.0;      // s
 /// flights before it.
 class Blocks {
  public:
-  explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), count_(flights.count(), 1) {
-    const auto spans = flights.share().of_each_flight<std::pair<double, double>>([&](std::size_t flight) {
-      const std::vector<double>& time = flights.bins(flight).time();
-      return time.empty() ? std::pair(0.0, 0.0) : std::pair(time.front(), time.back() - time.front());
-    });
+  explicit Blocks(FitFlights& flights)
+      : spans_(flights.share().of_each_flight<std::pair<double, double>>([&](std::size_t flight) {
+          const std::vector<double>& time = flights.bins(flight).time();
+          return time.empty() ? std::pair(0.0, 0.0) : std::pair(time.front(), time.back() - time.front());
+        })) {
     double all = 0.0;
-    for (const auto& [begin, length] : spans) all += length;
-    length_ = flights.count() >= min_flights ? infinity : std::max(all / part_count, min_part);
-    for (std::size_t f = 0; f < flights.count(); ++f) {
-      begin_[f] = spans[f].first;
-      count_[f] += static_cast<std::size_t>(spans[f].second / length_);
-    }
+    for (const auto& [begin, length] : spans_) all += length;
+    if (spans_.size() < min_flights) length_ = std::max(all / part_count, min_part);
+    for (std::size_t flight = 0; flight < spans_.size(); ++flight) count_ += count(flight);
   }
 
   /// Number of blocks of all flights, and of one flight.
-  std::size_t count() const { return std::accumulate(count_.begin(), count_.end(), std::size_t{0}); }
-  std::size_t count(std::size_t flight) const { return count_[flight]; }
+  std::size_t count() const { return count_; }
+  std::size_t count(std::size_t flight) const {
+    return 1 + static_cast<std::size_t>(spans_[flight].second / length_);
+  }
 
   std::size_t operator()(std::size_t flight, double time) const {
-    const double position = std::max((time - begin_[flight]) / length_, 0.0);
-    return std::min(static_cast<std::size_t>(position), count_[flight] - 1);
+    const double position = std::max((time - spans_[flight].first) / length_, 0.0);
+    return std::min(static_cast<std::size_t>(position), count(flight) - 1);
   }
 
  private:
-  double length_ = infinity;  // s
-  std::vector<double> begin_;
-  std::vector<std::size_t> count_;
+  std::vector<std::pair<double, double>> spans_;  // begin and duration of each flight, s
+  double length_ = infinity;                      // s
+  std::size_t count_ = 0;
 };
 
 /// Sums over the bins of a flight with one reference, for one set of equations.
@@ -162,7 +160,8 @@ bool is_determined(Eigen::Index coefficient, const Eigen::MatrixXd& rest,
 
 }  // namespace
 
-FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit) {
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Solution& solution,
+                             const Misfit& misfit) {
   const FitEquations& last = equations.back();
   FitFlights& main = *last.flights;
   const FitTask& task = main.task();
@@ -178,13 +177,13 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   std::vector<Eigen::VectorXd> zeros(main.share().flights(), Eigen::VectorXd::Zero(fitted));
   std::vector<StaticReference> alike;
   std::vector<std::vector<StageScores>> stages(main.count());  // one for each local flight, first reference
+  const Eigen::VectorXd& values = solution.values;
+  const ScaledLoss loss(task.options.loss, solution.deviation);
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
     const Eigen::Index width = as_index(each.parameters.size());
-    const Eigen::VectorXd& values = each.solution.values;
-    const ScaledLoss loss(task.options.loss, each.solution.deviation);
     for (FitFlights* const flights : each.flights->joint()) {
-      const bool is_first_reference = flights == each.flights;
+      const bool is_first_reference = flights == each.flights.get();
       const bool is_alike =
           &each == &last && main.joint().size() > 1 && flights->task().reference.is_static_pressure();
       const bool sees_law = each.flights->sees_law(*flights);
@@ -262,14 +261,13 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   for (const Eigen::MatrixXd& block : excluded) derivatives += block.leftCols(size);
   const PriorRows prior = prior_rows(task, parameters);
-  const double unit = last.solution.deviation * last.solution.deviation;
+  const double unit = solution.deviation * solution.deviation;
   derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
   score += unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
 
   FitCovariance found;
-  for (const double part : main.share().of_each_flight<double>(
-           [&](std::size_t flight) { return information_about_mean(main.bins(flight), main.noise(flight)); }))
-    found.information += part;
+  found.information = main.share().sum_of_each_flight<double>(
+      [&](std::size_t flight) { return information_about_mean(main.bins(flight), main.noise(flight)); });
   found.blocks = excluded.size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
   found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted, fitted);
@@ -279,7 +277,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const M
   // Parameters at a bound have no variance.
   std::vector<Eigen::Index> varying;
   for (Eigen::Index k = 0; k < fitted; ++k) {
-    if (!last.solution.at_bound[parameters[static_cast<std::size_t>(k)]]) varying.push_back(k);
+    if (!solution.at_bound[parameters[static_cast<std::size_t>(k)]]) varying.push_back(k);
   }
   if (varying.empty()) return found;
   const Eigen::MatrixXd equations_of_all = derivatives(varying, varying);

@@ -10,12 +10,10 @@
 
 namespace pcor::internal {
 
-/// Equations of a fit: some of the requested parameters from the samples of some flights, at the result of
-/// their stage.
+/// Equations of a fit: some of the requested parameters from the samples of some flights.
 struct FitEquations {
-  FitFlights* flights;
+  std::shared_ptr<FitFlights> flights;
   std::vector<std::size_t> parameters;
-  Solution solution;
 };
 
 struct FitCovariance {
@@ -50,6 +48,7 @@ struct FitCovariance {
 /// residuals less misfit, and the misfit of the law. Errors of fixed parameters propagate to the others.
 ///
 /// @param equations in the order of the requested parameters; the last ones include all samples
-FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Misfit& misfit);
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Solution& solution,
+                             const Misfit& misfit);
 
 }  // namespace pcor::internal

@@ -1,7 +1,6 @@
 #include "fit/fit_flights.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <map>
 #include <optional>
 
 #include "campaign/model_parameters.hpp"
@@ -13,14 +12,10 @@ namespace pcor::internal {
 
 namespace {
 
-/// Coefficient of an effect shared by the model and the reference's model, and its neutral value.
-struct Alike {
-  std::size_t position;  ///< index among the parameters of residuals
-  double neutral;
-};
-
-std::vector<Alike> alike_in(const FitTask& task) {
-  std::vector<Alike> alike;
+/// Neutral values of the coefficients of effects that the model and the reference's model share, by their
+/// indices among the parameters of residuals.
+std::map<std::size_t, double> alike_in(const FitTask& task) {
+  std::map<std::size_t, double> alike;
   const ModelDefinition* const other = task.reference.model();
   if (other == nullptr) return alike;
   for (const std::string& effect : task.options.alike) {
@@ -28,7 +23,7 @@ std::vector<Alike> alike_in(const FitTask& task) {
     const auto add = [&](const ModelDefinition& model, std::size_t first) {
       const std::optional<std::size_t> position = first_parameter_of(model, effect);
       for (std::size_t i = 0; position && i < neutral.size(); ++i)
-        alike.push_back({first + *position + i, neutral[i]});
+        alike.emplace(first + *position + i, neutral[i]);
     };
     add(task.model, 0);
     add(*other, parameter_count(task.model.model));
@@ -48,13 +43,11 @@ Eigen::MatrixXd by_requested(
     const std::vector<std::size_t>& requested,
     const std::function<Eigen::MatrixXd(const double* coefficients, const std::vector<std::size_t>& known)>&
         evaluate) {
-  const std::vector<Alike> alike = alike_in(task);
+  const std::map<std::size_t, double> alike = alike_in(task);
   std::vector<std::size_t> known;
   std::vector<std::size_t> columns;
   for (std::size_t k = 0; k < requested.size(); ++k) {
-    const bool is_alike = std::any_of(alike.begin(), alike.end(),
-                                      [&](const Alike& each) { return each.position == requested[k]; });
-    if (is_alike || requested[k] >= shared_parameters(residuals, task)) continue;
+    if (alike.count(requested[k]) != 0 || requested[k] >= shared_parameters(residuals, task)) continue;
     known.push_back(requested[k]);
     columns.push_back(k);
   }
@@ -82,7 +75,7 @@ Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& tas
   Eigen::VectorXd coefficients = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
   const Eigen::Index shared = as_index(shared_parameters(residuals, task));
   coefficients.head(shared) = parameters.head(shared);
-  for (const Alike& alike : alike_in(task)) coefficients[as_index(alike.position)] = alike.neutral;
+  for (const auto& [position, neutral] : alike_in(task)) coefficients[as_index(position)] = neutral;
   return coefficients;
 }
 

@@ -87,7 +87,7 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     further_.push_back(std::make_unique<FitFlights>(with, setup_));
     // GPS is fitted after the others, with a separate likelihood.
     if (!gps_kind(with.reference) && further_.back()->sees_parameters())
-      seeing_.push_back(further_.back().get());
+      joint_.push_back(further_.back().get());
   }
 }
 
@@ -112,19 +112,13 @@ bool FitFlights::masks_change_at(const Eigen::VectorXd& parameters) {
   return change;
 }
 
-std::vector<FitFlights*> FitFlights::joint() {
-  std::vector<FitFlights*> all{this};
-  all.insert(all.end(), seeing_.begin(), seeing_.end());
-  return all;
-}
-
-bool FitFlights::rows_are_linear() {
-  const std::vector<FitFlights*> all = joint();
-  return std::all_of(all.begin(), all.end(), [](const FitFlights* each) { return each->rows_are_linear_; });
+bool FitFlights::rows_are_linear() const {
+  return std::all_of(joint_.begin(), joint_.end(),
+                     [](const FitFlights* each) { return each->rows_are_linear_; });
 }
 
 bool FitFlights::uses_fixed_jacobian() const {
-  return has_moving_columns() || keeps_derivatives(task_.reference) || !seeing_.empty();
+  return has_moving_columns() || keeps_derivatives(task_.reference) || joint_.size() > 1;
 }
 
 bool FitFlights::has_moving_columns() const {
@@ -179,10 +173,13 @@ void FitFlights::prepare(std::size_t flight, const FitFlight& fit) {
   binned_.bins[flight] = fit.bins(prepared_, spikes_[flight]);
   by_offsets_[flight] = fit.by_offsets(bins(flight));
   evaluate(flight, fit);
+  // Other outliers make other bins: the noise has a level for each of them.
+  if (!noise_.empty())
+    noise_[flight].level = {noise_levels(bins(flight), binned_.residuals[flight], noise_[flight])};
 }
 
 void FitFlights::prepare(const Eigen::VectorXd& parameters) {
-  for (FitFlights* const other : seeing_) other->prepare(parameters);
+  for (std::size_t k = 1; k < joint_.size(); ++k) joint_[k]->prepare(parameters);
   if (parameters == prepared_) return evaluate_at(parameters);
   prepared_ = evaluated_ = parameters;
   share().attempt([&] { visit([this](std::size_t flight, const FitFlight& fit) { prepare(flight, fit); }); });
@@ -307,15 +304,12 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters) {
 
 std::size_t FitFlights::outliers(const Eigen::VectorXd& parameters, double limit) {
   evaluate_at(parameters);
-  std::size_t sum = 0;
-  for (const std::size_t part : share().of_each_flight<std::size_t>([&](std::size_t flight) {
-         const Eigen::VectorXd innovations = rows(flight, parameters, {}).innovations;
-         return spikes_[flight] +
-                static_cast<std::size_t>(
-                    (innovations.cwiseAbs().array() > limit).select(bins(flight).counts(), 0.0).sum());
-       }))
-    sum += part;
-  return sum;
+  return share().sum_of_each_flight<std::size_t>([&](std::size_t flight) {
+    const Eigen::VectorXd innovations = rows(flight, parameters, {}).innovations;
+    return spikes_[flight] +
+           static_cast<std::size_t>(
+               (innovations.cwiseAbs().array() > limit).select(bins(flight).counts(), 0.0).sum());
+  });
 }
 
 }  // namespace pcor::internal

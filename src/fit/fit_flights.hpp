@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -139,10 +138,10 @@ class FitFlights {
 
   /// Fitted entries: these and the further references that depend on some of the requested parameters.
   /// Numbers of flights and samples, masks and single figures refer to the first reference.
-  std::vector<FitFlights*> joint();
+  const std::vector<FitFlights*>& joint() const { return joint_; }
 
   /// True if the residuals against all fitted references are linear in the free parameters.
-  bool rows_are_linear();
+  bool rows_are_linear() const;
 
   /// True if derivatives, or columns that depend on a coefficient, stay fixed until the flights are prepared
   /// again.
@@ -197,7 +196,8 @@ class FitFlights {
   /// all samples.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
 
-  /// Prepares bins, residuals and derivatives of every flight at these parameters; the noise stays.
+  /// Prepares bins, residuals and derivatives of every flight at these parameters; the noise stays, with a
+  /// level for each of the new bins.
   void prepare(const Eigen::VectorXd& parameters);
 
   /// Prepares every flight, and renews the weight of each reference.
@@ -230,7 +230,7 @@ class FitFlights {
 
   // Functions of a local flight.
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
-  /// Noise in these bins, after it was measured at their parameters.
+  /// Noise in these bins, after it was measured.
   const NoiseModel& noise(std::size_t flight) const { return noise_[flight]; }
   /// Derivatives by the requested and the held parameters, hPa per unit, in bins.
   const Eigen::MatrixXd& columns(std::size_t flight) const { return binned_.columns[flight]; }
@@ -269,7 +269,7 @@ class FitFlights {
   double deviation_ = 1.0;         // robust, residuals in bins, hPa: the weight of the reference
   std::vector<NoiseModel> noise_;  // empty before it was measured
   std::vector<std::unique_ptr<FitFlights>> further_;
-  std::vector<FitFlights*> seeing_;  // further references that depend on some parameter
+  std::vector<FitFlights*> joint_{this};
 };
 
 }  // namespace pcor::internal

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,54 +13,11 @@
 #include <pcor/model/formula.hpp>
 #include "fit/prior.hpp"
 #include "model_io/model_names.hpp"
+#include "model_io/parameter_unit.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
-
-/// Unit of a coefficient of a formula: the unit of the value, if the formula is a sum of this coefficient
-/// times pure numbers and of a part without it; divided by the unit of a quantity, if this coefficient is
-/// also multiplied by it; otherwise empty, because units of formulas are not computed.
-std::string unit_in_formula(const ModelEffect& effect, std::size_t number) {
-  const auto formula = Formula::parse(effect.formula, effect.parameter_names);
-  if (!formula) return "";
-  const std::vector<std::string>& names = formula->variables();
-  std::vector<double> variables(names.size(), 0.3);
-  std::vector<double> coefficients(effect.parameter_names.size(), 1.0);
-  const auto value = [&](double coefficient) {
-    coefficients[number] = coefficient;
-    return formula->value(variables.data(), coefficients.data());
-  };
-  const double slope = value(1.0) - value(0.0);
-  const double curvature = value(2.0) - value(1.0) - slope;
-  std::fill(coefficients.begin(), coefficients.end(), 2.0);
-  const double change = value(1.0) - value(0.0) - slope;  // caused by the other coefficients
-  const double rounding = 1e-9 * std::abs(slope);
-  if (!(slope != 0.0 && std::abs(curvature) + std::abs(change) <= rounding)) return "";
-  std::string unit(info_of(effect.location).unit);
-  bool is_divided = false;
-  for (std::size_t v = 0; v < names.size(); ++v) {
-    const Quantity quantity = quantity_named(names[v]);
-    if (quantity != Quantity::count && info_of(quantity).unit == "1") continue;
-    constexpr double usual = 0.3;
-    constexpr std::array<double, 2> factors{2.0, 3000.0};  // small and large values: limits are seen
-    std::size_t constant = 0;
-    std::size_t proportional = 0;
-    for (const double factor : factors) {
-      variables[v] = factor * usual;
-      const double ratio = (value(1.0) - value(0.0)) / slope;
-      if (std::abs(ratio - 1.0) < 1e-9) ++constant;
-      if (std::abs(ratio - factor) < 1e-9 * factor) ++proportional;
-    }
-    variables[v] = usual;
-    if (constant == factors.size()) continue;
-    if (quantity == Quantity::count || is_divided || proportional != factors.size()) return "";
-    const std::string divisor(info_of(quantity).unit);
-    unit += divisor.find('/') == std::string::npos ? "/" + divisor : "/(" + divisor + ")";
-    is_divided = true;
-  }
-  return unit;
-}
 
 void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition& file,
                     const std::string& prefix, bool fitted) {
@@ -73,11 +29,9 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition
     parameter.start = effect.parameters[p];
     parameter.bounds = file.bounds(e, p);
     parameter.fixed = !fitted || file.fit(e, p).fixed;
-    if (effect.is_surface()) parameter.unit = "1";
-    if (effect.is_formula()) parameter.unit = unit_in_formula(effect, p);
+    parameter.unit = parameter_unit(effect, p);
     if (effect.is_formula()) continue;
     const EffectInfo& info = *effect_named(effect.id);
-    parameter.unit = info.parameters[p].unit;
     parameter.neutral = info.parameters[p].neutral;
     parameter.typical = std::abs(info.parameters[p].typical);
     parameter.manoeuvre = info.manoeuvre;
@@ -167,8 +121,12 @@ FitTask fit_task(const ModelDefinition& model, const References& references, con
   FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
   task.doubt = stated_covariance(model, reference);
   task.surfaces = surfaces_of(model.model, reference.model());
-  task.start.resize(as_index(task.parameters.size()));
-  for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
+  task.start = task.lower = task.upper = Eigen::VectorXd(as_index(task.parameters.size()));
+  for (std::size_t p = 0; p < task.parameters.size(); ++p) {
+    task.start[as_index(p)] = task.parameters[p].start;
+    task.lower[as_index(p)] = task.parameters[p].bounds.lower;
+    task.upper[as_index(p)] = task.parameters[p].bounds.upper;
+  }
   task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
     ++passes;
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);

@@ -9,7 +9,6 @@
 
 #include <pcor/fit/refit.hpp>
 #include "fit/surface_roughness.hpp"
-#include "parallel/flight_partition.hpp"
 #include "parallel/workers.hpp"
 
 namespace pcor::internal {
@@ -55,6 +54,9 @@ struct FitTask {
   /// Whether the parameters after those of the model also belong to this reference's system. A system that
   /// only a further reference reads keeps the values of its file.
   bool shares_system = true;
+
+  Eigen::VectorXd lower{};  ///< bounds of each parameter
+  Eigen::VectorXd upper{};
 
   /// The prior of each surface of the model, of which the fit finds the size.
   std::vector<SurfaceRoughness> surfaces{};

@@ -16,7 +16,6 @@
 #include "campaign/model_parameters.hpp"
 #include "fit/fit_task.hpp"
 #include "numerics/decompositions.hpp"
-#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -47,26 +46,36 @@ struct FlightState {
 
 class GpsSolver {
  public:
-  GpsSolver(const std::vector<FitFlights*>& flights, Eigen::VectorXd start, const BeforeGps& before,
-            const std::vector<std::size_t>& requested)
+  GpsSolver(const std::vector<FitFlights*>& flights, Solution& solution, FitCovariance& covariance)
       : flights_(flights),
         task_(flights.front()->task()),
-        values_(std::move(start)),
-        before_(before),
-        requested_(requested),
-        count_(as_index(requested.size())),
-        columns_(requested),
-        doubt_of_fixed_(doubt_of(before.fixed)),
+        solution_(solution),
+        covariance_(covariance),
+        is_alone_(covariance.matrix.size() == 0),
+        requested_(flights.front()->setup().requested),
+        fixed_coefficients_(flights.front()->setup().held),
+        count_(as_index(requested_.size())),
+        before_(solution.values(requested_)),
+        carried_(Eigen::MatrixXd::Zero(count_, as_index(fixed_coefficients_.size()))),
+        columns_(requested_),
+        doubt_of_fixed_(task_.doubt(fixed_coefficients_, fixed_coefficients_)),
         states_(flights.size()) {
+    if (!is_alone_ && carried_.cols() > 0)
+      carried_ =
+          covariance.matrix.topRightCorner(count_, carried_.cols()) * information_inverse(doubt_of_fixed_);
+    for (std::size_t k = 0; k < fixed_coefficients_.size(); ++k) {
+      if (fixed_coefficients_[k] < parameter_count(task_.model.model)) continue;
+      doubt_of_fixed_.row(as_index(k)).setZero();
+      doubt_of_fixed_.col(as_index(k)).setZero();
+    }
     for (auto& each : states_) each.resize(task_.flights.size());
-    values_(requested_) = before.values;
     prior_deviation_.resize(count_);
     for (Eigen::Index k = 0; k < count_; ++k)
       prior_deviation_[k] = gps_prior_in_typical_sizes * parameter(k).typical;
     // A fitted coefficient replaces the nuisance for the same error.
     constexpr double held = 1e-3;  // fraction of its prior deviation; no result depends on it
     for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
-      if (std::any_of(requested.begin(), requested.end(),
+      if (std::any_of(requested_.begin(), requested_.end(),
                       [&](std::size_t p) { return task_.parameters[p].name == gps_nuisances[n].same_as; }))
         nuisance_deviation_[as_index(n)] *= held;
     }
@@ -79,11 +88,13 @@ class GpsSolver {
       read(round < rounds_with_noise, round == rounds - 2);
       step();
     }
-    const Eigen::VectorXd before_last = values_(requested_);
-    columns_.insert(columns_.end(), before_.fixed.begin(), before_.fixed.end());
+    const Eigen::VectorXd before_last = requested_values();
+    columns_.insert(columns_.end(), fixed_coefficients_.begin(), fixed_coefficients_.end());
     read(false, false);
+    step();
     GpsFit fit = result();
-    add_warning_of_convergence(fit.values - before_last, fit);
+    add_warning_of_convergence(requested_values() - before_last, fit);
+    for (std::size_t k = 0; k < requested_.size(); ++k) solution_.at_bound[requested_[k]] = at_bound_[k];
     return fit;
   }
 
@@ -94,18 +105,8 @@ class GpsSolver {
   const FitParameter& parameter(Eigen::Index k) const {
     return task_.parameters[requested_[static_cast<std::size_t>(k)]];
   }
+  Eigen::VectorXd requested_values() const { return solution_.values(requested_); }
   Eigen::MatrixXd identity() const { return Eigen::MatrixXd::Identity(shared(), shared()); }
-
-  /// Stated covariance of fixed coefficients; zero for those of the law of a reference.
-  Eigen::MatrixXd doubt_of(const std::vector<std::size_t>& coefficients) const {
-    Eigen::MatrixXd doubt = task_.doubt(coefficients, coefficients);
-    for (std::size_t k = 0; k < coefficients.size(); ++k) {
-      if (coefficients[k] < parameter_count(task_.model.model)) continue;
-      doubt.row(as_index(k)).setZero();
-      doubt.col(as_index(k)).setZero();
-    }
-    return doubt;
-  }
 
   /// Covariance from errors of fixed coefficients. @param derivatives by the fixed coefficients
   Eigen::MatrixXd covariance_by_fixed(const Eigen::MatrixXd& derivatives) const {
@@ -122,7 +123,7 @@ class GpsSolver {
 
   Part part_of(GpsKind kind, const FitFlight& fit, FlightState& state, bool with_noise,
                bool with_outliers) const {
-    const Eigen::VectorXd coefficients = flight_parameters(fit.residuals(), task_, values_);
+    const Eigen::VectorXd coefficients = flight_parameters(fit.residuals(), task_, solution_.values);
     const FlightSamples& samples = fit.residuals().samples();
     Part part;
     const GpsRows rows =
@@ -133,7 +134,7 @@ class GpsSolver {
     if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
     GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
     prior.deviation << prior_deviation_, nuisance_deviation_;
-    prior.mean.head(count_) = before_.values - values_(requested_);
+    prior.mean.head(count_) = before_ - requested_values();
     if (!state.noise) state.noise.emplace(kind);
     if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise->white(rows, state.outliers));
     if (with_noise) state.noise->maximise(rows, state.outliers, prior);
@@ -164,7 +165,7 @@ class GpsSolver {
           [&](std::size_t number, const FitFlight& fit) {
             return part_of(kind, fit, states_[r][number], with_noise, with_outliers);
           },
-          values_);
+          solution_.values);
       for (std::size_t f = 0; f < parts.size(); ++f) {
         for (const auto& [block, products] : parts[f].blocks) {
           const auto [sum, is_new] = blocks[f].try_emplace(block, products);
@@ -216,11 +217,11 @@ class GpsSolver {
   /// Prior covariance of the requested coefficients and shared nuisances.
   Eigen::MatrixXd prior_covariance() const {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(shared(), shared());
-    if (before_.covariance.size() > 0) {
-      covariance.topLeftCorner(count_, count_) = before_.covariance - covariance_by_fixed(before_.carried);
-    } else {
+    if (is_alone_)
       covariance.topLeftCorner(count_, count_) = free_ * free_.transpose();
-    }
+    else
+      covariance.topLeftCorner(count_, count_) =
+          covariance_.matrix.topLeftCorner(count_, count_) - covariance_by_fixed(carried_);
     covariance.diagonal().tail(gps_shared_nuisances) =
         nuisance_deviation_.head(gps_shared_nuisances).cwiseAbs2();
     return covariance;
@@ -229,7 +230,7 @@ class GpsSolver {
   /// Finds the directions of the coefficients that the flights determine.
   void find_free() {
     free_ = held_ = weak_ = Eigen::MatrixXd(count_, 0);
-    if (before_.covariance.size() > 0) return;
+    if (!is_alone_) return;
     Eigen::MatrixXd nuisances = matrix_.bottomRightCorner(gps_shared_nuisances, gps_shared_nuisances);
     nuisances.diagonal() += nuisance_deviation_.head(gps_shared_nuisances).cwiseAbs2().cwiseInverse();
     const Eigen::MatrixXd cross = matrix_.bottomLeftCorner(gps_shared_nuisances, count_);
@@ -269,12 +270,11 @@ class GpsSolver {
     prior_ = prior_covariance();
     posterior_ = (identity() + prior_ * matrix_).partialPivLu().solve(prior_);
     Eigen::VectorXd from = Eigen::VectorXd::Zero(shared());
-    const Eigen::VectorXd now = values_(requested_);
-    from.head(count_) = now - before_.values;
+    from.head(count_) = requested_values() - before_;
     change_ = posterior_ * (right_ + matrix_ * from);
     change_.head(count_) = level_held() * change_.head(count_);
     keep_bounds();
-    values_(requested_) = before_.values + change_.head(count_);
+    solution_.values(requested_) = before_ + change_.head(count_);
     warmer_ = change_[count_];
   }
 
@@ -292,7 +292,7 @@ class GpsSolver {
       Eigen::Index worst = -1;
       double beyond = 0.0;  // unit: standard deviations of the prior
       for (Eigen::Index k = 0; k < count_; ++k) {
-        const double value = before_.values[k] + change_[k];
+        const double value = before_[k] + change_[k];
         const double off = std::abs(value - within(k, value));
         if (off / prior_deviation_[k] > beyond && !at_bound_[static_cast<std::size_t>(k)]) {
           beyond = off / prior_deviation_[k];
@@ -301,7 +301,7 @@ class GpsSolver {
       }
       if (worst < 0) break;
       at_bound_[static_cast<std::size_t>(worst)] = true;
-      const double value = before_.values[worst] + change_[worst];
+      const double value = before_[worst] + change_[worst];
       const double missing = within(worst, value) - value;
       const double variance = covariance(worst, worst);
       if (variance > 0.0) {
@@ -311,7 +311,7 @@ class GpsSolver {
       }
       for (Eigen::Index k = 0; k < count_; ++k) {
         if (!at_bound_[static_cast<std::size_t>(k)]) continue;
-        change_[k] = within(k, before_.values[k] + change_[k]) - before_.values[k];
+        change_[k] = within(k, before_[k] + change_[k]) - before_[k];
       }
     }
   }
@@ -325,11 +325,8 @@ class GpsSolver {
     return std::sqrt(std::max(0.0, (defects_ * covariance).trace() / static_cast<double>(samples_)));
   }
 
+  /// Finds the covariance, after the last step.
   GpsFit result() {
-    step();
-    GpsFit fit;
-    fit.values = values_(requested_);
-    fit.at_bound = at_bound_;
     // Change of the solution without each block of five minutes. Scores of the blocks would understate the
     // error if one block decides, for example the only climb.
     Eigen::VectorXd residual_weights(shared() + 1);
@@ -344,20 +341,28 @@ class GpsSolver {
       const Eigen::VectorXd without = (identity() + prior_ * others).partialPivLu().solve(prior_ * score);
       sandwich += without * without.transpose();
     }
-    fit.parts = products_.size();
+    covariance_.blocks = products_.size();
     const Eigen::MatrixXd level = level_held();
-    fit.by_noise = level * posterior_.topLeftCorner(count_, count_) * level.transpose();
-    fit.kept = drawn.topLeftCorner(count_, count_);
+    const Eigen::MatrixXd kept = drawn.topLeftCorner(count_, count_);  // derivatives by the values before
+    Eigen::MatrixXd by_noise = level * posterior_.topLeftCorner(count_, count_) * level.transpose();
     const Eigen::MatrixXd by_scatter = level * sandwich.topLeftCorner(count_, count_) * level.transpose();
-    fit.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
-    fit.covariance = error_of(by_scatter) > error_of(fit.by_noise) ? by_scatter : fit.by_noise;
-    determined_ = error_of(fit.covariance);
-    fit.by_fixed = level * (fit.kept * before_.carried - (posterior_ * by_fixed_).topRows(count_));
-    fit.by_noise += covariance_by_fixed(fit.by_fixed);
-    fit.covariance += covariance_by_fixed(fit.by_fixed);
-    if (held_.cols() > 0) fit.covariance += doubt_of_held();
-    fit.covariance = 0.5 * (fit.covariance + fit.covariance.transpose()).eval();
-    fit.stated = error_of(fit.covariance);
+    covariance_.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
+    Eigen::MatrixXd stated = error_of(by_scatter) > error_of(by_noise) ? by_scatter : by_noise;
+    determined_ = error_of(stated);
+    const Eigen::MatrixXd by_fixed = level * (kept * carried_ - (posterior_ * by_fixed_).topRows(count_));
+    by_noise += covariance_by_fixed(by_fixed);
+    stated += covariance_by_fixed(by_fixed);
+    if (held_.cols() > 0) stated += doubt_of_held();
+    stated = 0.5 * (stated + stated.transpose()).eval();
+    covariance_.by_noise = is_alone_ ? by_noise : stated;
+    if (covariance_.by_doubt.size() > 0) covariance_.by_doubt = kept * covariance_.by_doubt;
+    const Eigen::MatrixXd doubt = task_.doubt(fixed_coefficients_, fixed_coefficients_);
+    const Eigen::MatrixXd across = by_fixed * doubt;
+    covariance_.by_flights = stated - across * by_fixed.transpose();
+    covariance_.matrix.resize(count_ + doubt.cols(), count_ + doubt.cols());
+    covariance_.matrix << stated, across, across.transpose(), doubt;
+    GpsFit fit;
+    fit.stated = error_of(stated);
     const Eigen::MatrixXd matrix = matrix_.topLeftCorner(count_, count_);
     const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     const Eigen::VectorXd eigenvalues =
@@ -435,10 +440,14 @@ class GpsSolver {
 
   const std::vector<FitFlights*>& flights_;
   const FitTask& task_;
-  Eigen::VectorXd values_;  // one per parameter
-  const BeforeGps& before_;
+  Solution& solution_;
+  FitCovariance& covariance_;
+  const bool is_alone_;  // without other references
   const std::vector<std::size_t>& requested_;
-  Eigen::Index count_;
+  const std::vector<std::size_t>& fixed_coefficients_;  // fixed coefficients with a stated error
+  const Eigen::Index count_;
+  const Eigen::VectorXd before_;      // requested coefficients before the fit
+  Eigen::MatrixXd carried_;           // derivatives of these by the fixed ones; zero without other references
   std::vector<std::size_t> columns_;  // parameters with a column: requested; in the last pass also fixed
   Eigen::MatrixXd doubt_of_fixed_;    // stated covariance of the fixed coefficients on which GPS depends
   Eigen::VectorXd prior_deviation_{};
@@ -465,9 +474,8 @@ class GpsSolver {
 
 }  // namespace
 
-GpsFit fit_gps(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
-               const std::vector<std::size_t>& requested) {
-  return GpsSolver(flights, start, before, requested).solve();
+GpsFit fit_gps(const std::vector<FitFlights*>& flights, Solution& solution, FitCovariance& covariance) {
+  return GpsSolver(flights, solution, covariance).solve();
 }
 
 }  // namespace pcor::internal

@@ -88,12 +88,11 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
                               task.parameters[fitted[static_cast<std::size_t>(b)]].name, correlation);
     }
     words.push_back(
-        fmt::format("{} is {}: {:.3g} +- {:.2g}, with a typical size of {:.2g}{}{}; fix it with --fix {}; to "
-                    "determine it: {}",
+        fmt::format("{} is {}: {:.3g} +- {:.2g} (typical size {:.2g}); to determine it: {}; or fix it with "
+                    "--fix {}{}{}",
                     parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
-                    solution.values[as_index(position)], error, parameter.typical,
-                    partners.empty() ? "" : ", and it is correlated with ", partners, parameter.name,
-                    parameter.manoeuvre));
+                    solution.values[as_index(position)], error, parameter.typical, parameter.manoeuvre,
+                    parameter.name, partners.empty() ? "" : "; it is correlated with ", partners));
   }
   if (condition > collinear_condition) {
     words.push_back(
@@ -106,9 +105,8 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
                              flown[static_cast<std::size_t>(Regime::speed_run)];
   if (flown.any() && !has_manoeuvre) {
     words.emplace_back(
-        "the flights have no pitch manoeuvre, yaw manoeuvre or speed run: the coefficients depend on climbs "
-        "and slow changes, in which angle of attack, Mach number and weight are correlated, and may absorb "
-        "missing effects");
+        "coefficients may absorb missing effects: the flights have no pitch manoeuvre, yaw manoeuvre or "
+        "speed run; in climbs and slow changes, angle of attack, Mach number and weight are correlated");
   }
   return words;
 }

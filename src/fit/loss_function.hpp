@@ -1,12 +1,11 @@
 #pragma once
 
-#include <ceres/loss_function.h>
-
 #include <Eigen/Dense>
 #include <array>
-#include <memory>
+#include <cmath>
 
 #include <pcor/fit/loss.hpp>
+#include "numerics/missing.hpp"
 #include "numerics/robust_weights.hpp"
 
 namespace pcor::internal {
@@ -16,15 +15,16 @@ class ScaledLoss {
  public:
   ScaledLoss() = default;  // least squares
   ScaledLoss(Loss loss, double deviation) {
-    if (loss == Loss::huber && deviation > 0.0)
-      function_ = std::make_shared<ceres::HuberLoss>(huber_width * deviation);
+    if (loss == Loss::huber && deviation > 0.0) width_ = huber_width * deviation;
   }
 
   /// The loss of a residual, and its first and second derivative by the square of the residual.
   std::array<double, 3> operator()(double residual) const {
-    std::array<double, 3> rho{residual * residual, 1.0, 0.0};
-    if (function_) function_->Evaluate(rho[0], rho.data());
-    return rho;
+    const double square = residual * residual;
+    if (!(square > width_ * width_)) return {square, 1.0, 0.0};
+    const double size = std::sqrt(square);
+    const double slope = width_ / size;
+    return {2.0 * width_ * size - width_ * width_, slope, -slope / (2.0 * square)};
   }
 
   /// Weight of each residual: the first derivative.
@@ -32,10 +32,10 @@ class ScaledLoss {
     return residuals.unaryExpr([this](double residual) { return (*this)(residual)[1]; });
   }
 
-  bool is_least_squares() const { return function_ == nullptr; }
+  bool is_least_squares() const { return std::isinf(width_); }
 
  private:
-  std::shared_ptr<const ceres::LossFunction> function_;
+  double width_ = infinity;
 };
 
 }  // namespace pcor::internal

@@ -53,43 +53,35 @@ std::array<std::vector<double>, states> states_of(const FlightSamples& samples) 
           *model.find(Quantity::static_pressure)};
 }
 
-/// Information about the heights of the bumps: derivatives have no prior, bumps have the variance of their
-/// state.
-class Heights {
- public:
-  /// @param products of the whitened rows (derivatives, bumps, residual)
-  Heights(const Eigen::MatrixXd& products, Eigen::Index derivatives)
-      : left_(products_after(products, derivatives)) {}
-
-  struct Posterior {
-    Eigen::MatrixXd covariance;
-    Eigen::VectorXd mean;
-    double gain;  ///< logarithm of the restricted likelihood over that without bumps
-  };
-
-  Posterior posterior(const Eigen::VectorXd& variance) const {
-    const Eigen::Index count = variance.size();
-    const Eigen::VectorXd size = variance.cwiseSqrt();
-    Eigen::MatrixXd inner = size.asDiagonal() * left_.topLeftCorner(count, count) * size.asDiagonal();
-    inner.diagonal().array() += 1.0;
-    const Eigen::LLT<Eigen::MatrixXd> factor(inner);
-    const Eigen::MatrixXd covariance = size.asDiagonal() * factor.solve(Eigen::MatrixXd(size.asDiagonal()));
-    const Eigen::VectorXd right = left_.col(count).head(count);
-    const Eigen::VectorXd mean = covariance * right;
-    const double logarithm = factor.matrixLLT().diagonal().array().log().sum();  // half the log determinant
-    return {covariance, mean, 0.5 * right.dot(mean) - logarithm};
-  }
-
- private:
-  Eigen::MatrixXd left_;  // information after elimination of the derivatives
+/// Bumps, given the residual and the noise.
+struct Posterior {
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd mean;
+  double gain;  ///< logarithm of the restricted likelihood over that without bumps
 };
+
+/// @param left products of the whitened rows (bumps, residual) after elimination of the derivatives, which
+/// have no prior
+/// @param variance of the height of each bump before
+Posterior posterior_of(const Eigen::MatrixXd& left, const Eigen::VectorXd& variance) {
+  const Eigen::Index count = variance.size();
+  const Eigen::VectorXd size = variance.cwiseSqrt();
+  Eigen::MatrixXd inner = size.asDiagonal() * left.topLeftCorner(count, count) * size.asDiagonal();
+  inner.diagonal().array() += 1.0;
+  const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+  const Eigen::MatrixXd covariance = size.asDiagonal() * factor.solve(Eigen::MatrixXd(size.asDiagonal()));
+  const Eigen::VectorXd right = left.col(count).head(count);
+  const Eigen::VectorXd mean = covariance * right;
+  const double logarithm = factor.matrixLLT().diagonal().array().log().sum();  // half the log determinant
+  return {covariance, mean, 0.5 * right.dot(mean) - logarithm};
+}
 
 constexpr double min_bump = 1e-3;  // size of a bump over the rms of the residual, practically zero
 
 /// Akaike weight of the model with the misfit relative to the model without (Burnham and Anderson 2002, Model
 /// selection and multimodel inference, section 2.9); variances above the minimum count as parameters. There
 /// is no misfit if the noise explains the residual equally well.
-double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& variance, double rms) {
+double weight_of(const Posterior& posterior, const Eigen::VectorXd& variance, double rms) {
   double parameters = 0.0;
   for (Eigen::Index s = 0; s < states; ++s) {
     if (variance[s * bumps] > 4.0 * min_bump * min_bump * rms * rms) parameters += 1.0;
@@ -101,7 +93,7 @@ double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& var
 /// rms of the residual: the variance of a state is the sum of squares of its heights over the number of them
 /// that the flights determine (MacKay 1992, Neural Computation 4, 415). Successive substitution ends at the
 /// same values from any start nearby, unlike a search without derivatives.
-Eigen::VectorXd variances_of(const Heights& heights, double rms) {
+Eigen::VectorXd variances_of(const Eigen::MatrixXd& left, double rms) {
   constexpr int max_rounds = 500;
   // Relative to the rms of the residual, of which the misfit is a part. Without this bound a narrow feature,
   // which requires large heights of alternating signs, makes the stated error of the slope of the law several
@@ -110,7 +102,7 @@ Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
   for (int round = 0; round < max_rounds; ++round) {
-    const Heights::Posterior posterior = heights.posterior(variance);
+    const Posterior posterior = posterior_of(left, variance);
     double change = 0.0;
     for (Eigen::Index s = 0; s < states; ++s) {
       const Eigen::Index first = s * bumps;
@@ -245,9 +237,9 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
       return Eigen::MatrixXd(all.transpose() * all);
     });
     if (!(rms > 0.0) || !white.allFinite()) return misfit;
-    const Heights heights(white, own);
-    const Eigen::VectorXd variance = variances_of(heights, rms);
-    const Heights::Posterior posterior = heights.posterior(variance);
+    const Eigen::MatrixXd white_left = products_after(white, own);
+    const Eigen::VectorXd variance = variances_of(white_left, rms);
+    const Posterior posterior = posterior_of(white_left, variance);
     const double weight = weight_of(posterior, variance, rms);
     misfit.variance = weight * variance;
     misfit.height = weight * posterior.mean;

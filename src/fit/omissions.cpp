@@ -74,23 +74,15 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   for (const std::string& effect : effects) {
     std::vector<Eigen::Index> others;
     std::vector<std::size_t> parameters;  // other parameters
-    Eigen::VectorXd away = Eigen::VectorXd::Zero(size);
     Eigen::VectorXd changed = solution.values;
     for (Eigen::Index k = 0; k < size; ++k) {
       const std::size_t p = requested[static_cast<std::size_t>(k)];
       if (task.parameters[p].effect == effect) {
         changed[as_index(p)] = task.parameters[p].neutral;
-        away[k] = changed[as_index(p)] - solution.values[as_index(p)];
       } else {
         others.push_back(k);
         parameters.push_back(p);
       }
-    }
-    Eigen::VectorXd lower(as_index(others.size()));
-    Eigen::VectorXd upper(as_index(others.size()));
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      lower[as_index(i)] = task.parameters[parameters[i]].bounds.lower;
-      upper[as_index(i)] = task.parameters[parameters[i]].bounds.upper;
     }
     // A linear problem needs one step from the fit to least squares; otherwise a few. A minimum of delta-p
     // may stop them, so they start again from the model without the effect.
@@ -103,10 +95,10 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
         const Eigen::MatrixXd rows = extrapolates ? rows_of_fit : rows_at(values);
         const Eigen::MatrixXd columns = rows(Eigen::all, others);
         Eigen::VectorXd right = columns * x - rows.col(size);
-        if (extrapolates) right -= rows.leftCols(size) * away;
+        if (extrapolates) right -= rows.leftCols(size) * (changed - solution.values)(requested);
         if (!right.allFinite()) break;
         const Eigen::VectorXd before = x;
-        x = bounded_least_squares(columns, right, lower, upper, x);
+        x = bounded_least_squares(columns, right, task.lower(parameters), task.upper(parameters), x);
         values(parameters) = x;
         if ((x - before).norm() < 1e-6 * x.norm()) break;
       }

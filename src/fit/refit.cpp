@@ -21,7 +21,6 @@
 #include "fit/omissions.hpp"
 #include "fit/solver.hpp"
 #include "fit/warnings.hpp"
-#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "parallel/workers.hpp"
 #include "roles/computed_from.hpp"
@@ -89,11 +88,10 @@ void require_sense(const FlightSet& flights, const ModelDefinition& model, const
 /// Result of the stages of a fit.
 struct Fitted {
   Solution solution{};
-  std::vector<std::size_t> parameters{};              // sorted by stage
-  std::vector<std::size_t> held{};                    // fixed parameters with an error stated in the files
-  std::vector<int> stage_of{};                        // one per parameter
-  std::unique_ptr<FitFlights> flights{};              // all samples and all parameters that were fitted
-  std::vector<std::unique_ptr<FitFlights>> stages{};  // samples of each stage but the last
+  std::vector<std::size_t> parameters{};  // sorted by stage
+  std::vector<std::size_t> held{};        // fixed parameters with an error stated in the files
+  std::vector<int> stage_of{};            // one per parameter
+  std::shared_ptr<FitFlights> flights{};  // all samples and all parameters that were fitted
   std::vector<FitEquations> equations{};
   bool has_converged = true;
 
@@ -108,10 +106,10 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
   constexpr int max_rounds = 50;
   Solution& solution = fitted.solution;
   for (std::size_t s = 0; s + 1 < stages.size(); ++s) {
-    fitted.stages.push_back(std::make_unique<FitFlights>(task, fitted.setup(task.options.stages[s].regimes)));
-    fitted.equations.push_back({fitted.stages.back().get(), stages[s], solution});
+    const FitSetup setup = fitted.setup(task.options.stages[s].regimes);
+    fitted.equations.push_back({std::make_shared<FitFlights>(task, setup), stages[s]});
   }
-  fitted.equations.push_back({fitted.flights.get(), stages.back(), solution});
+  fitted.equations.push_back({fitted.flights, stages.back()});
   fitted.has_converged = false;
   for (int round = 0; round < max_rounds && !fitted.has_converged; ++round) {
     const Eigen::VectorXd before = solution.values;
@@ -120,8 +118,8 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
       fitted.flights->weigh(solution.values);
       solution.deviation = fitted.flights->deviation(solution.values);
     }
-    for (const std::unique_ptr<FitFlights>& stage : fitted.stages) stage->share_weight(*fitted.flights);
-    for (FitEquations& each : fitted.equations) {
+    for (const FitEquations& each : fitted.equations) {
+      each.flights->share_weight(*fitted.flights);
       if (each.parameters.empty()) continue;
       solution = solve(*each.flights, std::move(solution), each.parameters, true);
       if (round == 0)
@@ -168,7 +166,7 @@ Fitted fit_in_stages(FitTask& task) {
   Solution& solution = fitted.solution;
   constexpr int max_masks = 3;
   for (int round = 0; round < max_masks; ++round) {
-    fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
+    fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
     solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
     if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
     // The masks are those of the solution, so that the start does not decide.
@@ -177,7 +175,7 @@ Fitted fit_in_stages(FitTask& task) {
   if (stages.size() > 1)
     repeat_stages(fitted, task, stages);
   else
-    fitted.equations.push_back({fitted.flights.get(), fitted.parameters, solution});
+    fitted.equations.push_back({fitted.flights, fitted.parameters});
   return fitted;
 }
 
@@ -208,7 +206,7 @@ Fitted prepared_for_gps(const FitTask& task) {
                       surface->effect, surface->effect));
     }
   }
-  fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
+  fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
   if (fitted.flights->samples() == 0) {
     throw Error(
         Error::Code::samples,
@@ -230,41 +228,17 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
   }
   if (by_gps.empty()) return std::nullopt;
   Solution& solution = fitted.solution;
-  const Eigen::Index count = as_index(fitted.parameters.size());
-  const Eigen::Index held = as_index(fitted.held.size());
-  const Eigen::MatrixXd doubt = task.doubt(fitted.held, fitted.held);
-  BeforeGps before{solution.values(fitted.parameters), {}, fitted.held, Eigen::MatrixXd::Zero(count, held)};
-  if (!is_alone) {
-    before.covariance = covariance.matrix.topLeftCorner(count, count);
-    if (held > 0) before.carried = covariance.matrix.topRightCorner(count, held) * information_inverse(doubt);
-  }
-  GpsFit gps = fit_gps(by_gps, solution.values, before, fitted.parameters);
-  solution.values(fitted.parameters) = gps.values;
-  for (std::size_t k = 0; k < fitted.parameters.size(); ++k)
-    solution.at_bound[fitted.parameters[k]] = gps.at_bound[k];
-  covariance.jackknife = gps.jackknife;
-  covariance.blocks = gps.parts;
-  if (is_alone && !is_masked_again && fitted.flights->masks_change_at(solution.values)) {
+  GpsFit gps = fit_gps(by_gps, solution, covariance);
+  if (!is_alone) return gps;
+  if (!is_masked_again && fitted.flights->masks_change_at(solution.values)) {
     // The masks use the solution, so that the start does not matter.
-    fitted.flights = std::make_unique<FitFlights>(task, fitted.setup());
+    fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
     solution.values = task.start;
+    covariance = {};
     return add_gps(fitted, task, covariance, true);
   }
-  if (is_alone) {
-    covariance.by_noise = gps.by_noise;
-    fitted.flights->measure_noise(solution.values);
-    solution.deviation = fitted.flights->deviation(solution.values);
-  } else {
-    covariance.by_noise = gps.covariance;
-    if (covariance.by_doubt.size() > 0) {
-      const Eigen::MatrixXd by_others = covariance.by_doubt.topRows(count);
-      covariance.by_doubt.topRows(count) = gps.kept * by_others;
-    }
-  }
-  const Eigen::MatrixXd across = gps.by_fixed * doubt;
-  covariance.by_flights = gps.covariance - across * gps.by_fixed.transpose();
-  covariance.matrix.resize(count + held, count + held);
-  covariance.matrix << gps.covariance, across, across.transpose(), doubt;
+  fitted.flights->measure_noise(solution.values);
+  solution.deviation = fitted.flights->deviation(solution.values);
   return gps;
 }
 
@@ -379,14 +353,12 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
     misfit = find_misfit(flights, solution);
     // The weights are those at the solution from now on, of every stage.
     fitted.solution.deviation = flights.deviation(solution.values);
-    for (FitEquations& each : fitted.equations) {
-      each.solution = solution;
-      if (each.flights == &flights) continue;
+    for (const FitEquations& each : fitted.equations) {
       each.flights->share_weight(flights);
       each.flights->prepare(solution.values);
     }
     result.condition_number = condition_number(unweighted(flights, solution.values), task, fitted.parameters);
-    covariance = fit_covariance(fitted.equations, misfit);
+    covariance = fit_covariance(fitted.equations, solution, misfit);
   }
   const std::optional<GpsFit> gps = add_gps(fitted, task, covariance);
   if (by_gps_alone) {

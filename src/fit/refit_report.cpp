@@ -81,7 +81,7 @@ ReportTable flight_table(const RefitResult& fit) {
                    "rms after, hPa",
                    "bias after, hPa",
                    "scatter after, hPa",
-                   "noise, hPa"};
+                   std::string(fit.noise_label()) + ", hPa"};
   for (const FlightFit& flight : fit.flights) {
     table.rows.push_back({flight.flight, flight.holdout ? "held out" : "fitted",
                           std::to_string(flight.after.samples), fmt::format("{:.3f}", flight.before.rms),
@@ -100,7 +100,8 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   const std::string change = std::isnan(fit.rms_before)
                                  ? "gives an rms residual of"
                                  : fmt::format("changes the rms residual from {:.3f} to", fit.rms_before);
-  report.title = fmt::format("The refit {} {:.3f} hPa; noise {:.3f} hPa", change, fit.rms, fit.noise_rms);
+  report.title = fmt::format("The refit {} {:.3f} hPa; {} {:.3f} hPa", change, fit.rms, fit.noise_label(),
+                             fit.noise_rms);
   report.subtitle = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   summarise_held_out(report, fit.flights);
   for (const std::string& warning : fit.warnings) report.summary.push_back(sentence(warning));

@@ -114,9 +114,10 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   }
   if (!apart.empty()) {
     notes.push_back(fmt::format(
-        "jackknife errors (without one {} at a time) differ from the errors by the noise model for {}: the "
-        "noise model is wrong, or a few minutes dominate the fit; use the larger error",
-        part, apart));
+        "use the larger of the jackknife error and the error by the noise model; they differ for {}; the "
+        "noise "
+        "model is wrong, or a few minutes dominate the fit (the jackknife leaves out one {} at a time)",
+        apart, part));
   }
   return notes;
 }

@@ -20,20 +20,6 @@ std::unique_ptr<FlightFile> open_icartt(const std::filesystem::path& path);
 
 namespace {
 
-/// A format of flight files.
-struct Format {
-  bool (*is_of)(const std::filesystem::path&);
-  std::unique_ptr<FlightFile> (*open)(const std::filesystem::path&);
-};
-
-constexpr Format known_formats[] = {
-    {is_netcdf,
-     [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
-       return std::make_unique<NetcdfFile>(path);
-     }},
-    {is_icartt, open_icartt},
-};
-
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
   throw Error(Error::Code::file, path.string() + what);
 }
@@ -67,6 +53,12 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
 
 }  // namespace
 
+std::optional<int> FlightFile::find_variable(const std::string& name) const {
+  for (int variable = 0; variable < variable_count(); ++variable)
+    if (variable_name(variable) == name) return variable;
+  return std::nullopt;
+}
+
 UnitConversion FlightFile::unpacking_of(int variable) const {
   return {packing_number(*this, variable, "scale_factor", 1),
           packing_number(*this, variable, "add_offset", 0)};
@@ -75,9 +67,8 @@ UnitConversion FlightFile::unpacking_of(int variable) const {
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
   require_readable(path);
   const FileInHand in_hand(path);
-  for (const Format& format : known_formats) {
-    if (format.is_of(path)) return format.open(path);
-  }
+  if (is_netcdf(path)) return std::make_unique<NetcdfFile>(path);
+  if (is_icartt(path)) return open_icartt(path);
   if (path.extension() == ".gz")
     fail(path, fmt::format(" is compressed; unpack it with gunzip -k {}, and name {}",
                            shell_quote(path.string()), (path.parent_path() / path.stem()).string()));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/note.hpp>
 #include <pcor/flight/flight.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
@@ -40,7 +42,7 @@ class FlightFile {
   }
 
   virtual int variable_count() const = 0;
-  virtual std::optional<int> find_variable(const std::string& name) const = 0;
+  virtual std::optional<int> find_variable(const std::string& name) const;
   virtual std::string variable_name(int variable) const = 0;
   virtual std::vector<int> dimensions_of(int variable) const = 0;
   virtual std::string dimension_name(int dimension) const = 0;
@@ -56,17 +58,17 @@ class FlightFile {
   virtual std::vector<double> number_attribute(int variable, const std::string& name) const = 0;
 
   /// True where the values are numbers.
-  virtual bool is_numeric(int variable) const = 0;
+  virtual bool is_numeric(int /*variable*/) const { return true; }
 
   /// The greatest number that the type of a numeric variable holds.
-  virtual double max_number(int variable) const = 0;
+  virtual double max_number(int /*variable*/) const { return std::numeric_limits<double>::max(); }
 
   /// Numbers that mark missing values of a numeric variable, in the units of `read`.
-  virtual std::vector<double> missing_values(int variable) const = 0;
+  virtual std::vector<double> missing_values(int /*variable*/) const { return {}; }
 
   /// Smallest and largest valid number of a numeric variable, in the units of `read`; infinite if the file
   /// states no range. @throws Error if the stated range is invalid.
-  virtual std::array<double, 2> valid_range(int variable) const = 0;
+  virtual std::array<double, 2> valid_range(int /*variable*/) const { return {-infinity, infinity}; }
 
   /// Attributes for a range of valid values that are not numbers, which `valid_range` ignores: "valid_range =
   /// \"all\"". Empty without such attributes.

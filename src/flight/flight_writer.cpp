@@ -417,8 +417,6 @@ FlightWriter::FlightWriter(const std::filesystem::path& output, const NewFlight&
                            const FileDescription& description)
     : implementation_(std::make_unique<Implementation>(output, nullptr, flight, description)) {}
 
-FlightWriter::FlightWriter(FlightWriter&&) noexcept = default;
-FlightWriter& FlightWriter::operator=(FlightWriter&&) noexcept = default;
 FlightWriter::~FlightWriter() = default;
 
 std::size_t FlightWriter::define(const OutputVariable& variable) {

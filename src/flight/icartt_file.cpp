@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -74,12 +72,6 @@ class IcarttFile final : public FlightFile {
 
   const std::filesystem::path& path() const override { return path_; }
   int variable_count() const override { return static_cast<int>(variables_.size()); }
-  std::optional<int> find_variable(const std::string& name) const override {
-    for (int i = 0; i < variable_count(); ++i) {
-      if (at(i).name == name) return i;
-    }
-    return std::nullopt;
-  }
   std::string variable_name(int variable) const override { return at(variable).name; }
   std::vector<int> dimensions_of(int /*variable*/) const override { return {0}; }
   std::string dimension_name(int /*dimension*/) const override { return "Time"; }
@@ -97,10 +89,6 @@ class IcarttFile final : public FlightFile {
     const std::optional<double> value = number_in(text_attribute(variable, name));
     return value ? std::vector<double>{*value} : std::vector<double>();
   }
-  bool is_numeric(int /*variable*/) const override { return true; }
-  double max_number(int /*variable*/) const override { return std::numeric_limits<double>::max(); }
-  std::vector<double> missing_values(int /*variable*/) const override { return {}; }
-  std::array<double, 2> valid_range(int /*variable*/) const override { return {-infinity, infinity}; }
   Notes notes() const override { return notes_; }
   void read(int variable, RecordBlock records, double* out) const override {
     const std::vector<double>& values = at(variable).values;

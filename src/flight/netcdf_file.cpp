@@ -348,12 +348,11 @@ std::string NetcdfFile::ignored_range(int variable) const {
 }
 
 std::array<double, 2> NetcdfFile::valid_range(int variable) const {
-  constexpr double unbounded = std::numeric_limits<double>::infinity();
   const int type = type_of(variable);
   const bool is_packed =
       !is_float(type) &&
       !(text_attribute(variable, "scale_factor") + text_attribute(variable, "add_offset")).empty();
-  std::array<double, 2> range{-unbounded, unbounded};
+  std::array<double, 2> range{-infinity, infinity};
   for (const RangeAttribute& each : range_attributes) {
     const auto attribute = find_attribute(variable, each.name);
     if (!attribute) continue;

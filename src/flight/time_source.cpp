@@ -1,6 +1,5 @@
 #include "flight/time_source.hpp"
 
-#include <fmt/format.h>
 #include <strings.h>
 #include <pcor/base/error.hpp>
 #include <pcor/base/shell_quote.hpp>

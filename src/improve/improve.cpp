@@ -167,11 +167,8 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
     }
     candidates.push_back(std::move(candidate));
   }
-  // Effects that are missing after the last step are not part of it.
-  for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
-    left.stands_for.clear();
+  for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas))
     rivals.push_back(std::move(left));
-  }
   for (WhatIfCandidate& rival : rivals) {
     const bool is_new = std::none_of(candidates.begin(), candidates.end(),
                                      [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });

@@ -12,7 +12,7 @@
 #include <pcor/effects/static_surface.hpp>
 #include "diagnose/finding_page.hpp"
 #include "diagnose/rms.hpp"
-#include "diagnose/traced_effect.hpp"
+#include "diagnose/unexplained.hpp"
 #include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {

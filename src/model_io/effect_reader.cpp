@@ -57,8 +57,7 @@ class EffectReader final : TomlReader {
   void check_new(const std::string& id, const Entry& entry) {
     const auto [first, is_new] = effect_lines_.emplace(id, entry.position.line);
     if (is_new) return;
-    fail(entry,
-         fmt::format("effect {} is in the model already, at line {}; remove one", quote(id), first->second));
+    fail(entry, "effect {} is in the model already, at line {}; remove one", quote(id), first->second);
   }
 
   static bool is_surface(const std::string& id, const Given& given) {
@@ -72,38 +71,36 @@ class EffectReader final : TomlReader {
     const Entry* const axes_entry = find(given, "axes");
     const Entry* const coefficients = find(given, "coefficients");
     if (axes_entry == nullptr || coefficients == nullptr)
-      fail(*given.at("id").node,
-           fmt::format("surface {} lacks its knots or coefficients; give {}", quote(id), requested));
+      fail(*given.at("id").node, "surface {} lacks its knots or coefficients; give {}", quote(id), requested);
     if (effect_named(id) != nullptr)
-      fail(axes_entry->position, fmt::format("effect {} has its formula in the catalogue; remove 'axes' and "
-                                             "'coefficients', or choose another id",
-                                             quote(id)));
+      fail(axes_entry->position,
+           "effect {} has its formula in the catalogue; remove 'axes' and "
+           "'coefficients', or choose another id",
+           quote(id));
     for (const char* const key : {"where", "unit", "source", "formula", "parameters", "scaling"}) {
       if (const Entry* const entry = find(given, key))
-        fail(entry->position, fmt::format("a surface has no key '{}'; remove it", key));
+        fail(entry->position, "a surface has no key '{}'; remove it", key);
     }
     std::vector<std::vector<double>> rows;
     for (const toml::node& node : array(*coefficients, requested)) {
       rows.push_back(numbers({coefficients->key, coefficients->position, &node, {}}, requested));
       if (rows.back().size() != rows.front().size())
-        fail(node,
-             fmt::format("this row has {} coefficients, the first row {}; give the same number in each row",
-                         rows.back().size(), rows.front().size()));
+        fail(node, "this row has {} coefficients, the first row {}; give the same number in each row",
+             rows.back().size(), rows.front().size());
     }
     const std::vector<Entry> axes = entries_of(table(*axes_entry, requested), quote(axes_entry->key));
     if (axes.size() != 2)
-      fail(*axes_entry, fmt::format("a surface has two axes, not {}; give {}", axes.size(), requested));
+      fail(*axes_entry, "a surface has two axes, not {}; give {}", axes.size(), requested);
     std::array<SurfaceAxis, 2> made;
     for (std::size_t k = 0; k < made.size(); ++k) {
       const auto [lower, upper] = range(axes[k]);
       const std::size_t count = k == 0 ? rows.size() : rows.empty() ? 0 : rows.front().size();
       made[k] = {quantity_named(axes[k].key), lower, upper, count};
       if (made[k].quantity == Quantity::count)
-        fail(axes[k].position,
-             fmt::format("there is no quantity {}; give {}", quote(axes[k].key), requested));
+        fail(axes[k].position, "there is no quantity {}; give {}", quote(axes[k].key), requested);
       if (!made[k].is_valid())
-        fail(*coefficients, fmt::format("{} has {} splines; give {} to {}", quote(axes[k].key), count,
-                                        SurfaceAxis::min_count, SurfaceAxis::max_count));
+        fail(*coefficients, "{} has {} splines; give {} to {}", quote(axes[k].key), count,
+             SurfaceAxis::min_count, SurfaceAxis::max_count);
     }
     ModelEffect effect = surface_effect(id, made);
     effect.parameters.clear();
@@ -116,16 +113,14 @@ class EffectReader final : TomlReader {
     const EffectInfo* const info = effect_named(id);
     if (info == nullptr) {
       fail(*given.at("id").node,
-           fmt::format(
-               "there is no effect {} in the catalogue; {} Or give a formula for a user-defined effect",
-               quote(id), full_stop(suggestion_text(id, names_of(effect_info, &EffectInfo::id)))));
+           "there is no effect {} in the catalogue; {} Or give a formula for a user-defined effect",
+           quote(id), full_stop(suggestion_text(id, names_of(effect_info, &EffectInfo::id))));
     }
     for (const char* const key : {"where", "unit", "source"}) {
       if (const Entry* const entry = find(given, key))
         fail(entry->position,
-             fmt::format(
-                 "effect {} of the catalogue has no key '{}'; remove it, or give a formula and a new id",
-                 quote(id), key));
+             "effect {} of the catalogue has no key '{}'; remove it, or give a formula and a new id",
+             quote(id), key);
     }
     ModelEffect effect = neutral_effect(id);
     if (const Entry* const entry = find(given, "scaling")) effect.scaling = scaling(*entry);
@@ -146,9 +141,8 @@ class EffectReader final : TomlReader {
       } else if (power.key == "dynamic_pressure") {
         result.dynamic_pressure = whole_power(power);
       } else {
-        fail(power.position,
-             fmt::format("an effect is scaled by powers of the two pressures, not of {}; give {}",
-                         quote(power.key), requested));
+        fail(power.position, "an effect is scaled by powers of the two pressures, not of {}; give {}",
+             quote(power.key), requested);
       }
     }
     return result;
@@ -157,8 +151,8 @@ class EffectReader final : TomlReader {
   int whole_power(const Entry& entry) const {
     const double power = number(entry);
     if (std::abs(power) > max_power || power != std::floor(power)) {
-      fail(entry, fmt::format("scaling exponent {} is invalid; use an integer from {} to {}", power,
-                              -max_power, max_power));
+      fail(entry, "scaling exponent {} is invalid; use an integer from {} to {}", power, -max_power,
+           max_power);
     }
     return static_cast<int>(power);
   }
@@ -166,11 +160,10 @@ class EffectReader final : TomlReader {
   // A value that physics allows.
   double possible(const Entry& entry, const ParameterInfo& info) const {
     const double value = number(entry);
-    if (value < info.lower || value > info.upper) {
-      fail(entry,
-           fmt::format("{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
-                       quote(entry.key), value, info.lower, info.upper,
-                       info.unit == "1" ? "" : fmt::format(" {}", info.unit)));
+    if (!info.allows(value)) {
+      fail(entry, "{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
+           quote(entry.key), value, info.lower, info.upper,
+           info.unit == "1" ? "" : fmt::format(" {}", info.unit));
     }
     return value;
   }
@@ -183,13 +176,11 @@ class EffectReader final : TomlReader {
   ModelEffect formula_effect(const std::string& id, const Given& given) const {
     const Entry& formula = given.at("formula");
     if (effect_named(id) != nullptr) {
-      fail(formula.position,
-           fmt::format("effect {} has its formula in the catalogue; remove 'formula', or give a new id",
-                       quote(id)));
+      fail(formula.position, "effect {} has its formula in the catalogue; remove 'formula', or give a new id",
+           quote(id));
     }
     if (const Entry* const entry = find(given, "scaling")) {
-      fail(entry->position,
-           fmt::format("effect {} is defined by a formula; write the scaling into it", quote(id)));
+      fail(entry->position, "effect {} is defined by a formula; write the scaling into it", quote(id));
     }
     ModelEffect effect;
     effect.id = id;
@@ -199,9 +190,10 @@ class EffectReader final : TomlReader {
     if (const Entry* const entry = find(given, "source")) effect.source = text(*entry);
     const Entry* const parameters = find(given, "parameters");
     if (parameters == nullptr) {
-      fail(formula.position, fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
-                                         "name = value }}, each with its first value",
-                                         quote(id)));
+      fail(formula.position,
+           "effect {} has a formula but no parameters; give parameters = {{ "
+           "name = value }}, each with its first value",
+           quote(id));
     }
     for (const Entry& entry : parameter_entries(*parameters)) {
       effect.parameter_names.push_back(entry.key);
@@ -216,31 +208,28 @@ class EffectReader final : TomlReader {
     const auto formula = Formula::parse(effect.formula, effect.parameter_names, &error);
     if (!formula) {
       const Entry& wrong = error.column == 0 ? parameters : formula_entry;
-      fail(*wrong.node, fmt::format("the formula of effect {} cannot be read: {}; correct it",
-                                    quote(effect.id), error.message));
+      fail(*wrong.node, "the formula of effect {} cannot be read: {}; correct it", quote(effect.id),
+           error.message);
     }
     if (effect.parameters.empty()) {
       fail(*formula_entry.node,
-           fmt::format(
-               "the formula of effect {} has no coefficient; give it one in parameters, such as k, and "
-               "multiply by it",
-               quote(effect.id)));
+           "the formula of effect {} has no coefficient; give it one in parameters, such as k, and "
+           "multiply by it",
+           quote(effect.id));
     }
     if (formula->unused_parameters().empty()) return;
     const std::string& unused = formula->unused_parameters().front();
     const std::string meant = did_you_mean(unused, formula->variables());
-    fail(*parameters.node,
-         fmt::format("the formula of effect {} does not use its parameter {}; {}", quote(effect.id),
-                     quote(unused), meant.empty() ? "remove the parameter" : meant));
+    fail(*parameters.node, "the formula of effect {} does not use its parameter {}; {}", quote(effect.id),
+         quote(unused), meant.empty() ? "remove the parameter" : meant);
   }
 
   EffectLocation place_of_action(const Entry& entry) const {
     const std::string name = text(entry);
     const EffectLocation location = location_named(name);
     if (location == EffectLocation::count) {
-      fail(entry,
-           fmt::format("unknown location {} of an effect; {}", quote(name),
-                       suggestion_text(name, names_of(effect_location_info, &EffectLocationInfo::name))));
+      fail(entry, "unknown location {} of an effect; {}", quote(name),
+           suggestion_text(name, names_of(effect_location_info, &EffectLocationInfo::name)));
     }
     return location;
   }
@@ -249,10 +238,8 @@ class EffectReader final : TomlReader {
     std::string unit = text(entry, "a unit in quotes");
     const std::string requested(info_of(location).unit);
     if (standard_unit(unit) != standard_unit(requested)) {
-      fail(entry,
-           fmt::format(
-               "the quantity at '{}' is in {}, not in {}; write the formula in {} and set unit = \"{}\"",
-               info_of(location).name, requested, quote(unit), requested, requested));
+      fail(entry, "the quantity at '{}' is in {}, not in {}; write the formula in {} and set unit = \"{}\"",
+           info_of(location).name, requested, quote(unit), requested, requested);
     }
     return unit;
   }
@@ -273,9 +260,8 @@ class EffectReader final : TomlReader {
     const Names known = parameter_names(effect);
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
-      fail(position,
-           fmt::format("effect {} has no parameter {}; {}", quote(effect.id), quote(name),
-                       known.empty() ? "the effect has no parameters" : suggestion_text(name, known)));
+      fail(position, "effect {} has no parameter {}; {}", quote(effect.id), quote(name),
+           known.empty() ? "the effect has no parameters" : suggestion_text(name, known));
     }
     return static_cast<std::size_t>(found - known.begin());
   }
@@ -286,8 +272,7 @@ class EffectReader final : TomlReader {
       each_parameter(*errors, effect, [&](std::size_t i, const Entry& entry) {
         const double value = number(entry);
         if (value < 0.0) {
-          fail(entry, fmt::format("the standard error of {} is negative; give a number of 0 or above",
-                                  quote(entry.key)));
+          fail(entry, "the standard error of {} is negative; give a number of 0 or above", quote(entry.key));
         }
         fit[i].standard_error = value;
       });
@@ -297,15 +282,14 @@ class EffectReader final : TomlReader {
         const auto [lower, upper] = range(entry);
         const double value = effect.parameters[i];
         if (value < lower || value > upper) {
-          fail(entry, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
-                                  quote(entry.key)));
+          fail(entry, "the value {} of {} is outside its bounds; change one of them", value,
+               quote(entry.key));
         }
         // A refit must stay within the bounds that the reader accepts.
         const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
         if (info != nullptr && (lower < info->parameters[i].lower || upper > info->parameters[i].upper)) {
-          fail(entry,
-               fmt::format("the bounds of {} exceed the bounds of the catalogue; give bounds within [{}, {}]",
-                           quote(entry.key), info->parameters[i].lower, info->parameters[i].upper));
+          fail(entry, "the bounds of {} exceed the bounds of the catalogue; give bounds within [{}, {}]",
+               quote(entry.key), info->parameters[i].lower, info->parameters[i].upper);
         }
         fit[i].bounds = Bounds{lower, upper};
       });
@@ -329,7 +313,7 @@ class EffectReader final : TomlReader {
   void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {
     for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"a0\"]")) {
       ParameterFit& parameter = fit[parameter_number(name, node->source().begin, effect)];
-      if (parameter.fixed) fail(*node, fmt::format("{} is named twice; remove one", quote(name)));
+      if (parameter.fixed) fail(*node, "{} is named twice; remove one", quote(name));
       parameter.fixed = true;
     }
   }

@@ -34,12 +34,13 @@ std::string ModelDefinition::variable_of(Quantity role) const {
 std::string ModelDefinition::output_name(std::string_view standard_name) const {
   const auto renamed = output.find(std::string(standard_name));
   if (renamed != output.end()) return renamed->second;
-  const std::string_view result = result_of_uncertainty(standard_name);
-  if (result.empty()) return std::string(standard_name);
-  return output_name(result) + std::string(standard_name.substr(result.size()));
+  const std::size_t end = standard_name.rfind(uncertainty_ending);
+  if (end == 0 || end == std::string_view::npos || end + uncertainty_ending.size() != standard_name.size())
+    return std::string(standard_name);
+  return output_name(standard_name.substr(0, end)).append(uncertainty_ending);
 }
 
-ModelUncertainty uncertainty_of(const ModelDefinition& file) {
+ModelUncertainty internal::stated_uncertainty(const ModelDefinition& file) {
   const std::vector<NamedParameter> parameters = named_parameters(file.model);
   const std::size_t count = parameters.size();
   ModelUncertainty uncertainty;
@@ -71,6 +72,19 @@ ModelUncertainty uncertainty_of(const ModelDefinition& file) {
   uncertainty.static_defect = file.uncertainty.static_defect.value_or(0.0);
   uncertainty.static_defect_ratio = file.uncertainty.static_defect_ratio.value_or(0.0);
   return uncertainty;
+}
+
+ModelUncertainty uncertainty_of(const ModelDefinition& file) {
+  ModelUncertainty stated = stated_uncertainty(file);
+  // Without pressure variables the names follow from the flight's aircraft.
+  const bool has_thermometer = file.variables.count(Quantity::static_pressure) == 0 ||
+                               file.variables.count(Quantity::recovery_temperature) != 0;
+  if (!has_thermometer || !(stated.has_systematic() || stated.has_random())) return stated;
+  const ModelDefinition whole = with_doubts(file, doubts_of(file, thermometer_calibration));
+  stated = stated_uncertainty(whole);
+  for (std::size_t i = file.model.effects.size(); i < whole.model.effects.size(); ++i)
+    stated.calibration.push_back(whole.model.effects[i]);
+  return stated;
 }
 
 ParameterFit ModelDefinition::fit(std::size_t effect, std::size_t parameter) const {

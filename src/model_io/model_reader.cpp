@@ -25,8 +25,6 @@ using namespace internal;
 
 namespace {
 
-constexpr double max_recovery_factor = 1.2;
-
 Names role_names() {
   Names names = names_of(quantity_info, &QuantityInfo::name);
   names.resize(role_count);
@@ -66,8 +64,7 @@ class Reader final : TomlReader {
   std::string variable_name(const Entry& entry) const {
     std::string name = text(entry, "the name of a variable in quotes");
     if (!is_variable_name(name)) {
-      fail(entry, fmt::format("{}: {} cannot be the name of a netCDF variable; give another", called(entry),
-                              quote(name)));
+      fail(entry, "{}: {} cannot be the name of a netCDF variable; give another", called(entry), quote(name));
     }
     return name;
   }
@@ -76,20 +73,21 @@ class Reader final : TomlReader {
     const Quantity quantity = quantity_named(entry.key);
     if (quantity != Quantity::count && is_role(quantity)) return quantity;
     if (quantity != Quantity::count) {
-      fail(entry.position, fmt::format("{} is computed, not recorded, so it is not a role; remove it from {}",
-                                       quote(entry.key), entry.title));
+      fail(entry.position, "{} is computed, not recorded, so it is not a role; remove it from {}",
+           quote(entry.key), entry.title);
     }
-    fail(entry.position,
-         fmt::format("there is no role {}; {}", quote(entry.key), suggestion_text(entry.key, role_names())));
+    fail(entry.position, "there is no role {}; {}", quote(entry.key),
+         suggestion_text(entry.key, role_names()));
   }
 
   void check_format(const toml::table& root) const {
     const std::optional<Entry> entry = entry_of(root, "format");
     const std::string format = entry ? entry->node->value_or(std::string()) : "";
     if (format != model_format && format.rfind("pcor-model/", 0) == 0)
-      fail(*entry, fmt::format("the file has the format {0}, but this program reads {1} only; use the pcor "
-                               "version that wrote it, or write format = \"{2}\"",
-                               quote(format), quote(model_format), model_format));
+      fail(*entry,
+           "the file has the format {0}, but this program reads {1} only; use the pcor "
+           "version that wrote it, or write format = \"{2}\"",
+           quote(format), quote(model_format), model_format);
     require_format(root, "a model file", model_format);
   }
 
@@ -133,8 +131,7 @@ class Reader final : TomlReader {
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
       if (file_.variables.count(quantity) != 0) continue;
       const std::string_view name = info_of(quantity).name;
-      fail(position,
-           fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
+      fail(position, "the role '{}' has no variable; add {} = \"...\" to [variables]", name, name);
     }
   }
 
@@ -169,9 +166,8 @@ class Reader final : TomlReader {
     std::stable_sort(given.begin(), given.end(), [this](Quantity a, Quantity b) {
       return variable_positions_.at(a) < variable_positions_.at(b);
     });
-    fail(variable_positions_.at(given[1]),
-         fmt::format("the roles '{}' and '{}' both have a variable; give one for {}", info_of(given[0]).name,
-                     info_of(given[1]).name, what));
+    fail(variable_positions_.at(given[1]), "the roles '{}' and '{}' both have a variable; give one for {}",
+         info_of(given[0]).name, info_of(given[1]).name, what);
   }
 
   // Both `static_pressure = "mbar"` and `unit.static_pressure = "mbar"`.
@@ -193,20 +189,20 @@ class Reader final : TomlReader {
     const std::string requested(info_of(quantity).unit);
     // Without pressure variables the names follow from the flight's aircraft.
     if (file_.variables.count(quantity) == 0 && file_.variables.count(Quantity::static_pressure) != 0) {
-      fail(entry.position, fmt::format("the role {} has a unit but no variable; name its variable in "
-                                       "[variables], or remove it from [units]",
-                                       quote(entry.key)));
+      fail(entry.position,
+           "the role {} has a unit but no variable; name its variable in "
+           "[variables], or remove it from [units]",
+           quote(entry.key));
     }
     if (!is_known_unit(unit)) {
-      fail(entry, fmt::format("{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit),
-                              requested));
+      fail(entry, "{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit), requested);
     }
     if (!is_convertible(unit, requested)) {
-      fail(entry, fmt::format("{}: the unit {} does not convert to {}; give one that does", called(entry),
-                              quote(unit), requested));
+      fail(entry, "{}: the unit {} does not convert to {}; give one that does", called(entry), quote(unit),
+           requested);
     }
     if (!file_.units.emplace(quantity, unit).second) {
-      fail(entry.position, fmt::format("the unit of {} is given twice; remove one", quote(entry.key)));
+      fail(entry.position, "the unit of {} is given twice; remove one", quote(entry.key));
     }
   }
 
@@ -215,16 +211,16 @@ class Reader final : TomlReader {
     const std::vector<Entry> entries = entries_of(table(section_entry), "[output]");
     for (const Entry& entry : entries) {
       if (!contains(known, entry.key)) {
-        fail(entry.position,
-             fmt::format("there is no output {}; {}", quote(entry.key), suggestion_text(entry.key, known)));
+        fail(entry.position, "there is no output {}; {}", quote(entry.key),
+             suggestion_text(entry.key, known));
       }
       file_.output[entry.key] = variable_name(entry);
     }
     for (const Entry& entry : entries) {
       for (const std::string& other : known) {
         if (other == entry.key || file_.output_name(other) != file_.output[entry.key]) continue;
-        fail(entry, fmt::format("{} and '{}' would both be written as {}; rename one of them",
-                                quote(entry.key), other, quote(file_.output[entry.key])));
+        fail(entry, "{} and '{}' would both be written as {}; rename one of them", quote(entry.key), other,
+             quote(file_.output[entry.key]));
       }
     }
   }
@@ -241,7 +237,7 @@ class Reader final : TomlReader {
     const std::int64_t which = whole_number(entry, "a whole number: 1, 2 or 3");
     if (which == 4) fail(entry, std::string(approach_4_refusal));
     if (which < 1 || which > 3) {
-      fail(entry, fmt::format("there is no approach {}; give 1, 2 or 3", which));
+      fail(entry, "there is no approach {}; give 1, 2 or 3", which);
     }
     return static_cast<LamsApproach>(which);
   }
@@ -258,8 +254,8 @@ class Reader final : TomlReader {
       const PublishedRecoveryFactor* law = published_recovery_factor(name);
       if (law == nullptr) {
         const Names known = names_of(published_recovery_factors, &PublishedRecoveryFactor::name);
-        fail(entry, fmt::format("there is no published recovery factor {}; {}", quote(name),
-                                suggestion_text(name, known)));
+        fail(entry, "there is no published recovery factor {}; {}", quote(name),
+             suggestion_text(name, known));
       }
       recovery = law->law;
       file_.recovery_factor_name = name;
@@ -269,7 +265,7 @@ class Reader final : TomlReader {
     if (entry.node->is_array()) {
       const std::vector<double> coefficients = numbers(entry, requested);
       if (coefficients.size() != recovery.coefficients.size()) {
-        fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), coefficients.size(), requested));
+        fail(entry, "{} has {} numbers; give {}", called(entry), coefficients.size(), requested);
       }
       std::copy(coefficients.begin(), coefficients.end(), recovery.coefficients.begin());
     } else if (entry.node->is_number()) {
@@ -277,10 +273,9 @@ class Reader final : TomlReader {
     } else {
       fail(entry, wrong_kind(entry, requested));
     }
-    const double constant = recovery.coefficients[0];
-    if (!(constant > 0.0 && constant <= max_recovery_factor)) {
-      fail(entry, fmt::format("recovery factor {} is out of range (0, {}]; correct it", constant,
-                              max_recovery_factor));
+    if (!recovery.is_possible()) {
+      fail(entry, "recovery factor {} is out of range (0, {}]; correct it", recovery.coefficients[0],
+           RecoveryFactor::maximum);
     }
   }
 
@@ -299,7 +294,7 @@ class Reader final : TomlReader {
     const std::string requested = "[offset, slope] or [offset, slope, slope for a unit of Mach number]";
     std::vector<double> values = numbers(entry, requested);
     if (values.size() != 2 && values.size() != 3) {
-      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), values.size(), requested));
+      fail(entry, "{} has {} numbers; give {}", called(entry), values.size(), requested);
     }
     values.resize(3);
     return {values[0], values[1], values[2]};
@@ -319,8 +314,8 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries_of(table(section_entry), "[domain]")) {
       if (quantity_named(entry.key) == Quantity::count) {
         const Names known = names_of(quantity_info, &QuantityInfo::name);
-        fail(entry.position,
-             fmt::format("there is no quantity {}; {}", quote(entry.key), suggestion_text(entry.key, known)));
+        fail(entry.position, "there is no quantity {}; {}", quote(entry.key),
+             suggestion_text(entry.key, known));
       }
       const auto [lower, upper] = range(entry);
       file_.model.domain.push_back({entry.key, lower, upper});
@@ -342,8 +337,8 @@ class Reader final : TomlReader {
           {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = not_negative(entry); }},
           {"note", [&](const Entry& entry) { law.note = text(entry); }}});
     if (last != nullptr && law.valid_to < law.valid_from) {
-      fail(*last, fmt::format("the domain of the law ends at {}, before its start {}; change one of them",
-                              law.valid_to, law.valid_from));
+      fail(*last, "the domain of the law ends at {}, before its start {}; change one of them", law.valid_to,
+           law.valid_from);
     }
   }
 
@@ -361,9 +356,9 @@ class Reader final : TomlReader {
           {"matrix", [&](const Entry& entry) { matrix = entry; }}});
     if (!parameters || !matrix) {
       fail(section_entry.position,
-           fmt::format("[covariance] has no '{}'; give both parameters and matrix, or "
-                       "remove the table",
-                       parameters ? "matrix" : "parameters"));
+           "[covariance] has no '{}'; give both parameters and matrix, or "
+           "remove the table",
+           parameters ? "matrix" : "parameters");
     }
     read_covariance_parameters(*parameters);
     if (values) check_values(*values);
@@ -377,14 +372,15 @@ class Reader final : TomlReader {
     const std::string requested = fmt::format("{} numbers, one for each parameter", names.size());
     const std::vector<double> values = numbers(entry, requested);
     if (values.size() != names.size())
-      fail(entry, fmt::format("'values' has {} numbers; give {}", values.size(), requested));
+      fail(entry, "'values' has {} numbers; give {}", values.size(), requested);
     for (std::size_t i = 0; i < names.size(); ++i) {
       const double* const own = parameter_named(file_.model, names[i]);
       const double value = own != nullptr ? *own : 0.0;
       if (std::abs(value - values[i]) <= 1e-9 * std::abs(value)) continue;
-      fail(entry, fmt::format("[covariance] does not match the coefficients: {} = {} in values, {} in its "
-                              "effect; refit the model or remove [covariance] and stderr",
-                              names[i], values[i], value));
+      fail(entry,
+           "[covariance] does not match the coefficients: {} = {} in values, {} in its "
+           "effect; refit the model or remove [covariance] and stderr",
+           names[i], values[i], value);
     }
   }
 
@@ -398,9 +394,10 @@ class Reader final : TomlReader {
       const auto position = static_cast<std::size_t>(found - names.begin());
       const double here = std::sqrt(file_.covariance.matrix[position][position]);
       if (std::abs(here - *stated) <= 0.02 * std::max(here, *stated)) continue;
-      fail(entry, fmt::format("[covariance] does not match the effect: standard error of {} is {:.3g} in "
-                              "the matrix, {:.3g} in the effect; refit the model or remove one",
-                              name, here, *stated));
+      fail(entry,
+           "[covariance] does not match the effect: standard error of {} is {:.3g} in "
+           "the matrix, {:.3g} in the effect; refit the model or remove one",
+           name, here, *stated);
     }
   }
 
@@ -424,13 +421,13 @@ class Reader final : TomlReader {
     if (quantity == Quantity::count || !is_role(quantity)) {
       Names known = role_names();
       known.insert(known.end(), {"static_defect", "static_defect_ratio"});
-      fail(entry.position,
-           fmt::format("there is no role {}; {}", quote(entry.key), suggestion_text(entry.key, known)));
+      fail(entry.position, "there is no role {}; {}", quote(entry.key), suggestion_text(entry.key, known));
     }
     if (file_.variables.count(quantity) == 0) {
-      fail(entry.position, fmt::format("the role {} has an uncertainty but no variable; name its variable in "
-                                       "[variables], or remove it from [uncertainty]",
-                                       quote(entry.key)));
+      fail(entry.position,
+           "the role {} has an uncertainty but no variable; name its variable in "
+           "[variables], or remove it from [uncertainty]",
+           quote(entry.key));
     }
     return quantity;
   }
@@ -440,10 +437,10 @@ class Reader final : TomlReader {
     Names& names = file_.covariance.parameters;
     for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"static-qp.a2\"]")) {
       if (!contains(known, name) && !has_doubt(name)) {
-        fail(*node, fmt::format("the model has no parameter {}; {}", quote(name),
-                                known.empty() ? "remove [covariance]" : suggestion_text(name, known)));
+        fail(*node, "the model has no parameter {}; {}", quote(name),
+             known.empty() ? "remove [covariance]" : suggestion_text(name, known));
       }
-      if (contains(names, name)) fail(*node, fmt::format("{} is named twice; remove one", quote(name)));
+      if (contains(names, name)) fail(*node, "{} is named twice; remove one", quote(name));
       names.push_back(name);
     }
   }
@@ -455,12 +452,11 @@ class Reader final : TomlReader {
     for (const toml::node& node : array(entry, requested)) {
       matrix.push_back(numbers({entry.key, entry.position, &node, entry.title}, requested));
       if (matrix.back().size() != size) {
-        fail(node,
-             fmt::format("a row of the matrix has {} numbers; give {}", matrix.back().size(), requested));
+        fail(node, "a row of the matrix has {} numbers; give {}", matrix.back().size(), requested);
       }
     }
     if (matrix.size() != size) {
-      fail(entry, fmt::format("the matrix has {} rows; give {}", matrix.size(), requested));
+      fail(entry, "the matrix has {} rows; give {}", matrix.size(), requested);
     }
     for (std::size_t i = 0; i < size; ++i) {
       if (matrix[i][i] < 0.0) fail(entry, "a variance of the matrix is negative; refit the model");

@@ -1,6 +1,9 @@
 #include "model_io/output_table.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include <pcor/realtime/result_uncertainty.hpp>
 
 namespace pcor::internal {
 namespace {
@@ -58,90 +61,73 @@ Quantities ambient_temperature(const Correction& correction) {
              : thermometer(correction);
 }
 
-constexpr std::string_view uncertainty_ending = "_uncertainty";
-
-/// CF marks the standard error of a quantity by a modifier after its standard name.
-OutputRow uncertainty(const std::string& name, Quantity quantity, Quantity result,
-                      const std::string& long_name, const std::string& standard_name,
-                      const std::string& category) {
-  OutputRow row;
-  row.name = name + std::string(uncertainty_ending);
-  row.quantity = quantity;
-  row.long_name = "Standard uncertainty of " + long_name;
-  if (!standard_name.empty()) row.standard_name = standard_name + " standard_error";
-  row.category = category;
-  row.from = [](const Correction&) { return Quantities{}; };
-  row.uncertainty_of = result;
-  return row;
+/// Adds the uncertainties of the results. CF marks the standard error of a quantity by a modifier after its
+/// standard name.
+std::vector<OutputRow> with_uncertainties(std::vector<OutputRow> table) {
+  for (const UncertainResult& each : uncertain_results) {
+    OutputRow row = *std::find_if(table.begin(), table.end(),
+                                  [&each](const OutputRow& other) { return other.quantity == each.result; });
+    row.name += uncertainty_ending;
+    row.quantity = each.uncertainty;
+    row.long_name = "Standard uncertainty of " + row.long_name;
+    if (!row.standard_name.empty()) row.standard_name += " standard_error";
+    row.from = [](const Correction&) { return Quantities{}; };
+    row.uncertainty_of = each.result;
+    table.push_back(std::move(row));
+  }
+  return table;
 }
 
 }  // namespace
 
 const std::vector<OutputRow>& output_table() {
-  static const std::vector<OutputRow> table{
-      {"PCOR", Q::static_defect, "Static defect (delta-p) of the model", "", "Aircraft State", law},
-      {"PCOR_LAMS", Q::lams_static_defect, "Static defect (delta-p) from LAMS", "", "Aircraft State",
-       [](const Correction& c) {
-         return joined({{Q::static_pressure, Q::dynamic_pressure}, beam(c), thermometer(c), humidity(c)});
-       }},
-      {"PSXC", Q::corrected_static_pressure, "Corrected Static Pressure", "air_pressure", "Atmos. State",
-       [](const Correction& c) {
-         return joined(
-             {{Q::static_pressure},
-              delta_p(c),
-              read_before_ports(c, {EffectLocation::static_transducer, EffectLocation::static_line})});
-       }},
-      {"QCXC", Q::corrected_dynamic_pressure, "Corrected Dynamic Pressure", "", "Aircraft State",
-       [](const Correction& c) {
-         return joined({{Q::dynamic_pressure},
-                        delta_p(c),
-                        read_before_ports(c, {EffectLocation::dynamic_transducer, EffectLocation::static_line,
-                                              EffectLocation::total_line, EffectLocation::pitot})});
-       }},
-      {"MACHX", Q::corrected_mach, "Aircraft Mach Number", "", "Aircraft State",
-       [](const Correction& c) {
-         return joined({{Q::corrected_static_pressure, Q::corrected_dynamic_pressure}, humidity(c)});
-       }},
-      {"ATX", Q::ambient_temperature, "Ambient Temperature", "air_temperature", "Atmos. State",
-       ambient_temperature},
-      {"TASX", Q::corrected_airspeed, "Aircraft True Airspeed", "platform_speed_wrt_air", "Aircraft State",
-       [](const Correction& c) {
-         return joined({{Q::corrected_mach, Q::ambient_temperature}, humidity(c)});
-       }},
-      {"ATLAMS", Q::lams_temperature, "Ambient Temperature from LAMS", "air_temperature", "Atmos. State",
-       [](const Correction& c) {
-         return joined({beam(c), {Q::corrected_mach}, humidity(c)});
-       }},
-      {"ATLAMSF", Q::filtered_lams_temperature, "Ambient Temperature from LAMS, without periods under 3 s",
-       "air_temperature", "Atmos. State", [](const Correction&) { return Quantities{Q::lams_temperature}; },
-       true},
-      {"QCLAMS", Q::lams_dynamic_pressure, "Dynamic Pressure from LAMS", "", "Aircraft State",
-       [](const Correction& c) {
-         return joined({beam(c), {Q::corrected_static_pressure, Q::ambient_temperature}, humidity(c)});
-       }},
-      {"HYDSTEP", Q::height_step, "Hydrostatic height step per kelvin, -(R_a/g0) ln(p_i/p_(i-1))", "",
-       "Atmos. State",
-       [](const Correction& c) {
-         return joined({{Q::corrected_static_pressure}, humidity(c)});
-       }},
-      uncertainty("PCOR", Q::static_defect_uncertainty, Q::static_defect,
-                  "Static defect (delta-p) of the model", "", "Aircraft State"),
-      uncertainty("PSXC", Q::corrected_static_pressure_uncertainty, Q::corrected_static_pressure,
-                  "Corrected Static Pressure", "air_pressure", "Atmos. State"),
-      uncertainty("QCXC", Q::corrected_dynamic_pressure_uncertainty, Q::corrected_dynamic_pressure,
-                  "Corrected Dynamic Pressure", "", "Aircraft State"),
-      uncertainty("ATX", Q::ambient_temperature_uncertainty, Q::ambient_temperature, "Ambient Temperature",
-                  "air_temperature", "Atmos. State"),
-      uncertainty("TASX", Q::corrected_airspeed_uncertainty, Q::corrected_airspeed, "Aircraft True Airspeed",
-                  "platform_speed_wrt_air", "Aircraft State")};
+  static const std::vector<OutputRow> table = with_uncertainties(
+      {{"PCOR", Q::static_defect, "Static defect (delta-p) of the model", "", "Aircraft State", law},
+       {"PCOR_LAMS", Q::lams_static_defect, "Static defect (delta-p) from LAMS", "", "Aircraft State",
+        [](const Correction& c) {
+          return joined({{Q::static_pressure, Q::dynamic_pressure}, beam(c), thermometer(c), humidity(c)});
+        }},
+       {"PSXC", Q::corrected_static_pressure, "Corrected Static Pressure", "air_pressure", "Atmos. State",
+        [](const Correction& c) {
+          return joined(
+              {{Q::static_pressure},
+               delta_p(c),
+               read_before_ports(c, {EffectLocation::static_transducer, EffectLocation::static_line})});
+        }},
+       {"QCXC", Q::corrected_dynamic_pressure, "Corrected Dynamic Pressure", "", "Aircraft State",
+        [](const Correction& c) {
+          return joined(
+              {{Q::dynamic_pressure},
+               delta_p(c),
+               read_before_ports(c, {EffectLocation::dynamic_transducer, EffectLocation::static_line,
+                                     EffectLocation::total_line, EffectLocation::pitot})});
+        }},
+       {"MACHX", Q::corrected_mach, "Aircraft Mach Number", "", "Aircraft State",
+        [](const Correction& c) {
+          return joined({{Q::corrected_static_pressure, Q::corrected_dynamic_pressure}, humidity(c)});
+        }},
+       {"ATX", Q::ambient_temperature, "Ambient Temperature", "air_temperature", "Atmos. State",
+        ambient_temperature},
+       {"TASX", Q::corrected_airspeed, "Aircraft True Airspeed", "platform_speed_wrt_air", "Aircraft State",
+        [](const Correction& c) {
+          return joined({{Q::corrected_mach, Q::ambient_temperature}, humidity(c)});
+        }},
+       {"ATLAMS", Q::lams_temperature, "Ambient Temperature from LAMS", "air_temperature", "Atmos. State",
+        [](const Correction& c) {
+          return joined({beam(c), {Q::corrected_mach}, humidity(c)});
+        }},
+       {"ATLAMSF", Q::filtered_lams_temperature, "Ambient Temperature from LAMS, without periods under 3 s",
+        "air_temperature", "Atmos. State", [](const Correction&) { return Quantities{Q::lams_temperature}; },
+        true},
+       {"QCLAMS", Q::lams_dynamic_pressure, "Dynamic Pressure from LAMS", "", "Aircraft State",
+        [](const Correction& c) {
+          return joined({beam(c), {Q::corrected_static_pressure, Q::ambient_temperature}, humidity(c)});
+        }},
+       {"HYDSTEP", Q::height_step, "Hydrostatic height step per kelvin, -(R_a/g0) ln(p_i/p_(i-1))", "",
+        "Atmos. State", [](const Correction& c) {
+          return joined({{Q::corrected_static_pressure}, humidity(c)});
+        }}});
   return table;
-}
-
-std::string_view result_of_uncertainty(std::string_view standard_name) {
-  constexpr std::string_view end = uncertainty_ending;
-  const std::size_t size = standard_name.size();
-  if (size <= end.size() || standard_name.substr(size - end.size()) != end) return {};
-  return standard_name.substr(0, size - end.size());
 }
 
 std::vector<std::string> output_names() {

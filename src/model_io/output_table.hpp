@@ -28,9 +28,8 @@ const std::vector<OutputRow>& output_table();
 /// The standard name of the quality bits.
 inline constexpr std::string_view quality_output = "PCORFLAG";
 
-/// Result of an uncertainty: "PSXC" for "PSXC_uncertainty"; empty if the name is not the name of an
-/// uncertainty.
-std::string_view result_of_uncertainty(std::string_view standard_name);
+/// What the default name of an uncertainty has after that of its result.
+inline constexpr std::string_view uncertainty_ending = "_uncertainty";
 
 /// The standard names of all results.
 std::vector<std::string> output_names();

@@ -12,7 +12,8 @@ std::string SensorDoubt::name() const {
 bool has_doubt(std::string_view coefficient) {
   for (const EffectInfo& info : effect_info) {
     for (std::size_t p = 0; p < parameter_capacity; ++p) {
-      if (info.parameters[p].doubt > 0.0 && SensorDoubt{std::string(info.id), p}.name() == coefficient)
+      if (info.parameters[p].calibration_uncertainty > 0.0 &&
+          SensorDoubt{std::string(info.id), p}.name() == coefficient)
         return true;
     }
   }
@@ -26,8 +27,8 @@ std::vector<SensorDoubt> doubts_of(const ModelDefinition& model,
     if (has_effect(model, id) || (id == "temp-offset" && has_effect(model, calibration_id))) continue;
     const EffectInfo& info = *effect_named(id);
     for (std::size_t p = 0; p < parameter_capacity; ++p) {
-      if (!(info.parameters[p].doubt > 0.0)) continue;
-      SensorDoubt doubt{std::string(id), p, info.parameters[p].doubt};
+      if (!(info.parameters[p].calibration_uncertainty > 0.0)) continue;
+      SensorDoubt doubt{std::string(id), p, info.parameters[p].calibration_uncertainty};
       const auto stated = model.uncertainty.sensors.find(doubt.name());
       doubt.is_usual = stated == model.uncertainty.sensors.end();
       if (!doubt.is_usual) doubt.size = stated->second;

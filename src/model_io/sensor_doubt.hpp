@@ -26,7 +26,8 @@ inline const std::vector<std::string_view> thermometer_calibration{"temp-offset"
 inline const std::vector<std::string_view> static_calibration{"psfd-bias", "psfd-gain", "psfd-drift"};
 inline const std::vector<std::string_view> dynamic_calibration{"qcf-zero"};
 
-/// Whether the coefficient, like "temp-offset.offset", has a default uncertainty (`ParameterInfo::doubt`).
+/// Whether the coefficient, like "temp-offset.offset", has a default uncertainty
+/// (`ParameterInfo::calibration_uncertainty`).
 bool has_doubt(std::string_view coefficient);
 
 /// Uncertainties of these effects: the defaults, or the values in `[uncertainty]` of the model. If the model
@@ -38,5 +39,9 @@ std::vector<SensorDoubt> doubts_of(const ModelDefinition& model,
 /// Model extended by the missing effects of these uncertainties, fixed at their neutral values, with the
 /// uncertainties as standard errors. A covariance of the model that names their coefficients applies to them.
 ModelDefinition with_doubts(ModelDefinition model, const std::vector<SensorDoubt>& doubts);
+
+/// Uncertainty that the file states, without default values of sensors (`uncertainty_of` adds these): the
+/// covariance is of the parameters of the model only.
+ModelUncertainty stated_uncertainty(const ModelDefinition& file);
 
 }  // namespace pcor::internal

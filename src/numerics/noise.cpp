@@ -1,6 +1,5 @@
 #include <pcor/numerics/noise.hpp>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +7,6 @@
 #include "numerics/local_noise.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
-#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 

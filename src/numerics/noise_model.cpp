@@ -20,7 +20,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t max_shapes = 48;
 constexpr double min_period = 300.0;  // s
 constexpr std::size_t min_innovations = 20;
-constexpr double same_time = 1e-6;  // s
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;
 
@@ -93,72 +92,22 @@ Eigen::VectorXd at_one_level(const Eigen::VectorXd& fast, const Binning& bins, c
   return whitened(fast, bins, even, 0);
 }
 
-std::vector<NoiseLevel> levels_of(const Eigen::VectorXd& innovations, const Binning& bins,
-                                  const NoiseModel& noise) {
+Eigen::VectorXd levels_of(const Eigen::VectorXd& innovations, const Binning& bins, const NoiseModel& noise) {
   const std::vector<double>& time = bins.time();
-  std::vector<NoiseLevel> levels;
-  for (std::size_t first = 0; first < time.size() || levels.empty();) {
+  Eigen::VectorXd levels(innovations.size());
+  for (std::size_t first = 0; first < time.size();) {
     std::size_t last = first;
     while (last < time.size() && time[last] < time[first] + local_noise_time) ++last;
     double here = noise.common_level;
     if (last - first >= min_innovations)
       here = robust_standard_deviation({innovations.data() + first, innovations.data() + last});
     const double level = local_noise_level(here, noise.common_level);
-    levels.push_back({time.empty() ? 0.0 : time[first], noise.scale * (level > 0.0 ? level : 1.0)});
+    levels.segment(as_index(first), as_index(last - first))
+        .setConstant(noise.scale * (level > 0.0 ? level : 1.0));
     first = last;
   }
   return levels;
 }
-
-}  // namespace
-
-bool NoiseModel::drifts() const {
-  return std::any_of(slow.begin(), slow.end(), [](double size) { return size > 0.0; });
-}
-
-NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
-  NoiseModel noise;
-  std::size_t count = 0;
-  std::vector<Segment> segments;
-  std::vector<Eigen::VectorXd> fast;
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    fast.push_back(without_drift(bins[f], residuals[f]));
-    for (const Segment& segment : bins[f].segments())
-      segments.push_back({count + segment.first, segment.count});
-    count += bins[f].size();
-    noise.level.emplace_back(Eigen::VectorXd::Ones(fast[f].size()));
-  }
-  constexpr int rounds = 2;
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<Eigen::VectorXd> scaled;
-    for (std::size_t f = 0; f < bins.size(); ++f) scaled.emplace_back(fast[f].cwiseQuotient(noise.level[f]));
-    noise.coefficients = autoregression(concatenated(scaled), segments);
-    std::vector<Eigen::VectorXd> innovations;
-    for (std::size_t f = 0; f < bins.size(); ++f)
-      innovations.push_back(at_one_level(fast[f], bins[f], noise));
-    noise.common_level = robust_standard_deviation(concatenated(innovations));
-    for (std::size_t f = 0; f < bins.size(); ++f)
-      noise.level[f] = level_of_bins(levels_of(innovations[f], bins[f], noise), bins[f]);
-  }
-  return noise;
-}
-
-std::vector<NoiseLevel> noise_levels(const Binning& bins, const Eigen::VectorXd& residual,
-                                     const NoiseModel& noise) {
-  return levels_of(at_one_level(without_drift(bins, residual), bins, noise), bins, noise);
-}
-
-Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binning& bins) {
-  Eigen::VectorXd result(as_index(bins.size()));
-  std::size_t last = 0;
-  for (std::size_t i = 0; i < bins.size(); ++i) {
-    while (last + 1 < levels.size() && levels[last + 1].begin <= bins.time()[i] + same_time) ++last;
-    result[as_index(i)] = levels[last].rms;
-  }
-  return result;
-}
-
-namespace {
 
 /// The restricted likelihood of residuals after columns, as the noise model changes.
 class RestrictedLikelihood {
@@ -248,7 +197,67 @@ std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   return sizes;
 }
 
+/// Sizes of the drift components, relative to the rms of the residuals, and their prior probability. The two
+/// components that a flight determines poorly have any of five sizes, or are absent, which is four times as
+/// probable; in addition to the slower one, the next slower component has the same size or, three times as
+/// probable, is absent.
+struct SlowSizes {
+  std::array<double, 3> slowest{};
+  double prior = 1.0;
+};
+
+constexpr std::size_t first_uncertain = 2;  // index among the drift components
+
+std::vector<SlowSizes> possible_sizes() {
+  constexpr std::array<double, 6> sizes{0.0, 0.1, 0.2, 0.4, 0.8, 1.6};
+  constexpr double absent = 4.0;
+  constexpr double beyond = 0.3;
+  std::vector<SlowSizes> possible;
+  for (const double one : sizes) {
+    for (const double next : sizes) {
+      const double prior = one > 0.0 ? 1.0 : absent;
+      possible.push_back({{one, next, 0.0}, next > 0.0 ? prior : prior * absent});
+      if (next > 0.0) possible.push_back({{one, next, next}, prior * beyond});
+    }
+  }
+  return possible;
+}
+
 }  // namespace
+
+bool NoiseModel::drifts() const {
+  return std::any_of(slow.begin(), slow.end(), [](double size) { return size > 0.0; });
+}
+
+NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
+  NoiseModel noise;
+  std::size_t count = 0;
+  std::vector<Segment> segments;
+  std::vector<Eigen::VectorXd> fast;
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    fast.push_back(without_drift(bins[f], residuals[f]));
+    for (const Segment& segment : bins[f].segments())
+      segments.push_back({count + segment.first, segment.count});
+    count += bins[f].size();
+    noise.level.emplace_back(Eigen::VectorXd::Ones(fast[f].size()));
+  }
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Eigen::VectorXd> scaled;
+    for (std::size_t f = 0; f < bins.size(); ++f) scaled.emplace_back(fast[f].cwiseQuotient(noise.level[f]));
+    noise.coefficients = autoregression(concatenated(scaled), segments);
+    std::vector<Eigen::VectorXd> innovations;
+    for (std::size_t f = 0; f < bins.size(); ++f)
+      innovations.push_back(at_one_level(fast[f], bins[f], noise));
+    noise.common_level = robust_standard_deviation(concatenated(innovations));
+    for (std::size_t f = 0; f < bins.size(); ++f) noise.level[f] = levels_of(innovations[f], bins[f], noise);
+  }
+  return noise;
+}
+
+Eigen::VectorXd noise_levels(const Binning& bins, const Eigen::VectorXd& residual, const NoiseModel& noise) {
+  return levels_of(at_one_level(without_drift(bins, residual), bins, noise), bins, noise);
+}
 
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
@@ -289,36 +298,6 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   for (double& slow : noise.slow) slow *= noise.scale;
   return found;
 }
-
-namespace {
-
-/// Sizes of the drift components, relative to the rms of the residuals, and their prior probability. The two
-/// components that a flight determines poorly have any of five sizes, or are absent, which is four times as
-/// probable; in addition to the slower one, the next slower component has the same size or, three times as
-/// probable, is absent.
-struct SlowSizes {
-  std::array<double, 3> slowest{};
-  double prior = 1.0;
-};
-
-constexpr std::size_t first_uncertain = 2;  // index among the drift components
-
-std::vector<SlowSizes> possible_sizes() {
-  constexpr std::array<double, 6> sizes{0.0, 0.1, 0.2, 0.4, 0.8, 1.6};
-  constexpr double absent = 4.0;
-  constexpr double beyond = 0.3;
-  std::vector<SlowSizes> possible;
-  for (const double one : sizes) {
-    for (const double next : sizes) {
-      const double prior = one > 0.0 ? 1.0 : absent;
-      possible.push_back({{one, next, 0.0}, next > 0.0 ? prior : prior * absent});
-      if (next > 0.0) possible.push_back({{one, next, next}, prior * beyond});
-    }
-  }
-  return possible;
-}
-
-}  // namespace
 
 NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                           const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
@@ -362,6 +341,29 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   for (Eigen::VectorXd& level : noise.level) level *= scale;
   for (std::size_t k = 0; k < squares.size(); ++k) noise.slow[k] = std::sqrt(squares[k] / sum);
   return noise;
+}
+
+std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& flights, std::size_t maximum) {
+  std::vector<std::size_t> all(flights.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  all.erase(std::remove_if(all.begin(), all.end(), [&](std::size_t f) { return flights[f].bins == 0; }),
+            all.end());
+  if (all.empty() && !flights.empty()) return {0};
+  if (all.size() <= maximum) return all;
+  const std::size_t bins =
+      std::accumulate(flights.begin(), flights.end(), std::size_t{0},
+                      [](std::size_t sum, const NoiseFlight& flight) { return sum + flight.bins; });
+  const std::size_t count = all.size();
+  all.erase(std::remove_if(all.begin(), all.end(),
+                           [&](std::size_t f) { return 4 * flights[f].bins * count < bins; }),
+            all.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [&](std::size_t a, std::size_t b) { return flights[a].begin < flights[b].begin; });
+  const std::size_t every = (all.size() + maximum - 1) / maximum;
+  std::vector<std::size_t> chosen;
+  for (std::size_t k = 0; k < all.size(); k += every) chosen.push_back(all[k]);
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
 }
 
 NoiseModel with_slower_noise(NoiseModel noise) {

@@ -27,12 +27,6 @@ struct NoiseModel {
   bool drifts() const;
 };
 
-/// The level of the noise of a flight from a time on, until that of the next.
-struct NoiseLevel {
-  double begin = 0.0;  ///< s
-  double rms = 0.0;    ///< rms of the innovations, hPa
-};
-
 /// A noise model, and how well it describes the residuals that it was found from.
 struct FoundNoise {
   NoiseModel model{};
@@ -40,21 +34,35 @@ struct FoundNoise {
   double likelihood = 0.0;  ///< twice the log-likelihood, with the columns at their best, without constants
 };
 
+/// A flight, as it may be chosen for the noise that all share.
+struct NoiseFlight {
+  double begin = 0.0;    ///< time of its first bin, s since 1970 UTC
+  std::size_t bins = 0;  ///< number of bins with a value of its residual
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(begin, bins);
+  }
+};
+
+/// Numbers, in increasing order, of the flights that determine the common part of the noise: all flights with
+/// bins, up to `maximum`. If there are more, at most `maximum`, spread over the time in which they were
+/// flown, among the flights with at least a quarter of the mean number of bins, which have three quarters of
+/// all bins: the choice does not depend on the order of the flights. If no flight has a bin, the first
+/// flight.
+std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& flights, std::size_t maximum = 16);
+
 /// Estimates autoregression and level from residuals from which all effects are removed. Slow drift is
 /// subtracted first, so that it does not appear as autocorrelation of the noise.
 ///
 /// @param residuals of each flight, in bins, hPa
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals);
 
-/// Levels of a flight, every five minutes, with the common part of the noise of the flights that determined
-/// the noise. Such a flight has its levels in the noise model.
+/// Level of each bin of a flight, for each five minutes, with the common part of the noise of the flights
+/// that determined the noise. Such a flight has its levels in the noise model.
 ///
 /// @param residual in bins, hPa
-std::vector<NoiseLevel> noise_levels(const Binning& bins, const Eigen::VectorXd& residual,
-                                     const NoiseModel& noise);
-
-/// The same levels bin by bin, of the bins of any part of the flight. @param levels one at least
-Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binning& bins);
+Eigen::VectorXd noise_levels(const Binning& bins, const Eigen::VectorXd& residual, const NoiseModel& noise);
 
 /// Complete noise of residuals to which columns are fitted: autoregression and levels by `estimate_noise`,
 /// then the drift components and a common scale of all parts by maximum likelihood for the residuals of the

@@ -23,22 +23,18 @@ void parallel_for(std::size_t count, std::size_t threads, const std::function<vo
       }
     }
   };
-  std::vector<std::future<void>> others;
+  std::vector<std::future<void>> parts;
+  parts.push_back(std::async(std::launch::deferred, work_on));  // this thread, when it waits
   try {
     for (std::size_t k = 1; k < std::min(threads, count); ++k)
-      others.push_back(std::async(std::launch::async, work_on));
+      parts.push_back(std::async(std::launch::async, work_on));
   } catch (const std::system_error&) {
     // The system has no more threads to give; those that there are do it all.
   }
   std::exception_ptr thrown;
-  try {
-    work_on();
-  } catch (...) {
-    thrown = std::current_exception();
-  }
-  for (std::future<void>& other : others) {
+  for (std::future<void>& part : parts) {
     try {
-      other.get();
+      part.get();
     } catch (...) {
       if (!thrown) thrown = std::current_exception();
     }

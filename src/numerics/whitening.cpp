@@ -146,14 +146,8 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   }
 }
 
-namespace {
-
-/// Number of columns filtered at a time: their latencies overlap.
-constexpr Eigen::Index columns_at_a_time = 8;
-
-}  // namespace
-
 Eigen::MatrixXd Whitening::operator()(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  constexpr Eigen::Index columns_at_a_time = 8;  // their latencies overlap
   using Row = Eigen::Array<double, columns_at_a_time, 1>;
   const auto order = static_cast<Eigen::Index>(order_);
   const Eigen::Index slow = decay_.rows();

@@ -33,15 +33,6 @@ struct Message {
 
 namespace {
 
-class Alone final : public Communicator {
- public:
-  std::size_t rank() const override { return 0; }
-  std::size_t size() const override { return 1; }
-
- private:
-  std::vector<std::string> exchange(const std::string& own) override { return {own}; }
-};
-
 Message message_of(const Error& error, std::size_t order) {
   Message message{Kind::failed};
   message.has_error = true;
@@ -121,7 +112,7 @@ std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
 }
 
 Communicator& serial_communicator() {
-  static Alone comm;
+  static Communicator comm;
   return comm;
 }
 

@@ -28,30 +28,18 @@ using namespace internal;
 
 namespace {
 
-bool send_all(int connection, const char* bytes, std::size_t count) {
+/// Repeats `move`, which sends or receives bytes, until it has moved all.
+template <class Byte, class Move>
+bool move_all(Byte* bytes, std::size_t count, const Move& move) {
   while (count > 0) {
-    const ssize_t sent = ::send(connection, bytes, count, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) {
-      if (errno == EPIPE || errno == ECONNRESET) errno = 0;
+    const ssize_t moved = move(bytes, count);
+    if (moved < 0 && errno == EINTR) continue;
+    if (moved <= 0) {
+      if (moved == 0 || errno == EPIPE || errno == ECONNRESET) errno = 0;
       return false;
     }
-    bytes += sent;
-    count -= static_cast<std::size_t>(sent);
-  }
-  return true;
-}
-
-bool receive_all(int connection, char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t received = ::recv(connection, bytes, count, 0);
-    if (received < 0 && errno == EINTR) continue;
-    if (received <= 0) {
-      if (received == 0 || errno == ECONNRESET) errno = 0;
-      return false;
-    }
-    bytes += received;
-    count -= static_cast<std::size_t>(received);
+    bytes += moved;
+    count -= static_cast<std::size_t>(moved);
   }
   return true;
 }
@@ -59,16 +47,22 @@ bool receive_all(int connection, char* bytes, std::size_t count) {
 // Send and receive complete texts. On failure they return false; errno is 0 if the other process has ended.
 
 bool send_text(int connection, const std::string& text) {
+  const auto send = [connection](const char* bytes, std::size_t count) {
+    return ::send(connection, bytes, count, MSG_NOSIGNAL);
+  };
   const std::uint64_t count = text.size();
-  return send_all(connection, reinterpret_cast<const char*>(&count), sizeof count) &&
-         send_all(connection, text.data(), text.size());
+  return move_all(reinterpret_cast<const char*>(&count), sizeof count, send) &&
+         move_all(text.data(), text.size(), send);
 }
 
 bool receive_text(int connection, std::string& text) {
+  const auto receive = [connection](char* bytes, std::size_t count) {
+    return ::recv(connection, bytes, count, 0);
+  };
   std::uint64_t count = 0;
-  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count)) return false;
+  if (!move_all(reinterpret_cast<char*>(&count), sizeof count, receive)) return false;
   text.resize(count);
-  return receive_all(connection, text.data(), text.size());
+  return move_all(text.data(), text.size(), receive);
 }
 
 /// Exit status of the process, as from waitpid; nullopt if the system no longer has it.

@@ -1,7 +1,6 @@
 #include "process/copied_variables.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "model_io/archived_model.hpp"
 #include "roles/usual_variables.hpp"
@@ -21,10 +20,7 @@ std::string first_series(const Flight& flight, const Names& names) {
 std::string series_that_is(const Flight& flight, const std::string& standard_name) {
   for (const std::string& name : flight.variables()) {
     const VariableInfo& info = flight.variable(name);
-    const bool is_it = std::find(info.attributes.begin(), info.attributes.end(),
-                                 std::pair<std::string, std::string>("standard_name", standard_name)) !=
-                       info.attributes.end();
-    if (info.is_series && is_it) return name;
+    if (info.is_series && info.attribute("standard_name") == standard_name) return name;
   }
   return {};
 }

@@ -144,20 +144,7 @@ class Processing {
     choose_chain();
   }
 
-  /// Model with the calibration uncertainty of its thermometer, if uncertainties are computed and the model
-  /// does not state it: otherwise that of the temperature would be far too small.
-  ModelDefinition doubted() const {
-    const UncertaintyPart part = options_.uncertainty;
-    if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
-        file_.variable_of(Quantity::recovery_temperature).empty())
-      return file_;
-    const ModelUncertainty stated = uncertainty_of(file_);
-    const bool is_stated =
-        stated.has_systematic() || (part != UncertaintyPart::systematic && stated.has_random());
-    return is_stated ? with_doubts(file_, doubts_of(file_, thermometer_calibration)) : file_;
-  }
-
-  void choose_chain() { chain_ = std::make_shared<const Chain>(chain_of(doubted().model, roles_)); }
+  void choose_chain() { chain_ = std::make_shared<const Chain>(chain_of(file_.model, roles_)); }
 
   /// Detects sensors that are constant in flight for much longer than their noise permits.
   void find_frozen_sensors() {
@@ -311,8 +298,10 @@ class Processing {
   ModelUncertainty uncertainty() {
     const UncertaintyPart part = options_.uncertainty;
     if (part == UncertaintyPart::none) return {};
-    ModelUncertainty stated = uncertainty_of(doubted());
-    if (part == UncertaintyPart::systematic) stated = stated.systematic_part();
+    ModelUncertainty stated = uncertainty_of(file_);
+    if (part == UncertaintyPart::systematic) {
+      stated = stated_uncertainty(file_).has_systematic() ? stated.systematic_part() : ModelUncertainty{};
+    }
     if (part == UncertaintyPart::random) stated = stated.random_part();
     if (stated.has_systematic() || stated.has_random()) return stated;
     if (part == UncertaintyPart::total_if_stated) return {};
@@ -328,7 +317,8 @@ class Processing {
 
   /// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
   bool states(std::initializer_list<EffectLocation> locations, std::initializer_list<Quantity> roles) const {
-    const std::size_t count = chain_->parameters().size();
+    std::size_t count = chain_->parameters().size();
+    for (const ModelEffect& each : uncertainty_.calibration) count += each.parameters.size();
     for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
          ++effect) {
       if (std::find(locations.begin(), locations.end(), chain_->location_of(effect)) == locations.end())
@@ -357,19 +347,20 @@ class Processing {
                  EffectLocation::pitot},
                 {Q::dynamic_pressure})) {
       note(
-          "the uncertainties exclude the pressure transducers, because the model does not state both; set "
-          "static_pressure and dynamic_pressure in its table [uncertainty]");
+          "set static_pressure and dynamic_pressure in [uncertainty] of the model: without both, the "
+          "uncertainties exclude the pressure transducers");
     }
     for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
-      if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
+      if (uncertainty_.calibration.empty()) break;
       const std::vector<std::string>& known = file_.covariance.parameters;
       if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
       note(
-          "the uncertainties assume {} = 0 +- {:g}, the usual size, because the model states no value; set "
-          "\"{}\" in its table [uncertainty]",
-          doubt.name(), doubt.size, doubt.name());
+          "set \"{}\" in [uncertainty] of the model: without it, the uncertainties assume 0 +- {:g}, the "
+          "usual "
+          "size",
+          doubt.name(), doubt.size);
     }
-    if (chain_->has_temperature() &&
+    if (chain_->has_temperature() && uncertainty_.calibration.empty() &&
         !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
                 {Q::recovery_temperature, Q::ambient_temperature})) {
       note("the uncertainties of temperature and airspeed exclude the thermometer");
@@ -386,8 +377,8 @@ class Processing {
     });
     if (changes_no_pressure(file_, options_)) {
       note(
-          "the model changes no pressure: all its coefficients are zero, so the pressures of the output are "
-          "the {} {} and {}; pcor refit finds coefficients if the flight determines them",
+          "the model changes no pressure: all its coefficients are zero; pcor refit finds them if the flight "
+          "determines them; the pressures of the output are the {} {} and {}",
           is_corrected ? "archived" : "recorded", static_pressure, dynamic_pressure);
     } else if (is_corrected) {
       note("{} and {} were corrected by the archive; the model corrects the remaining error", static_pressure,
@@ -605,7 +596,7 @@ class Processing {
     flight_.read_sample_times(block, summary_.rate, times.data());
     for (std::size_t i = 0; i < samples; ++i) {
       const double time = times[i] - summary_.first_time;
-      if (filtered_->inside() > 0 && loop_->starts_anew(time)) flush();
+      if (loop_->starts_anew(time)) flush();
       State<double>& state = loop_->state();
       const std::size_t record = block.first + i / static_cast<std::size_t>(summary_.rate);
       for (const Input& input : inputs_) {

@@ -1,4 +1,4 @@
-#include "regimes/cells.hpp"
+#include "regimes/search.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,6 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/physics/constants.hpp>
-
-#include "regimes/series.hpp"
 
 namespace pcor::internal {
 namespace {

@@ -89,8 +89,6 @@ class PageInMemory {
   ~PageInMemory() { ::close(descriptor_); }
   PageInMemory(const PageInMemory&) = delete;
   PageInMemory& operator=(const PageInMemory&) = delete;
-  PageInMemory(PageInMemory&&) = delete;
-  PageInMemory& operator=(PageInMemory&&) = delete;
 
   std::string path() const { return fmt::format("/dev/fd/{}", descriptor_); }
 

@@ -139,6 +139,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
         (taken.some(([from, to, at]) => from < left + width && to > left && Math.abs(at - line) < 13) ? along.length : 0);
       const [left, line] = [4, 20, -13, 34, -27, 48, -41, 62, -55].flatMap((down) => lefts.map((left) => [left, py + down]))
         .reduce((best, each) => cost(each) < cost(best) ? each : best);
+      if (cost([left, line]) >= along.length) continue;  // no place without covering another name or the scale
       taken.push([left, left + width, line]);
       pen.text(left, line, words, {...small(theme), fill: theme.ink, halo: theme.paper});
     }
@@ -159,7 +160,8 @@ function drawTrack(pen, width, height, item, samples, theme) {
   }
   pen.lines([[box.x + 12, box.y + 14, box.x + 12, box.y + 18, box.x + 12 + bar / perPixel, box.y + 18,
     box.x + 12 + bar / perPixel, box.y + 14]], theme.ink, 1.25);
-  pen.text(box.x + 18 + bar / perPixel, box.y + 20, `${number(bar, bar)} km`, {...small(theme), fill: theme.ink});
+  pen.text(box.x + 18 + bar / perPixel, box.y + 20, `${number(bar, bar)} km`,
+    {...small(theme), fill: theme.ink, halo: theme.paper});
   colourBar(pen, box, colours, range, shade.label, theme);
   return {
     points: found.length,

@@ -113,7 +113,7 @@ class WhatIf {
       return shown.length ? [make('ul', {'class': 'what-if-effects', 'aria-label': label}, ...shown.map(({element}) => element))] : [];
     };
     const others = list('Effects that were not found', true);
-    if (others.length) others.unshift(make('p', {}, 'Not found, because not significant. The closest ones, to try:'));
+    if (others.length) others.unshift(make('p', {}, 'Not found by the search. The closest ones, to try:'));
     return [...list('Effects', false), ...others];
   }
 
@@ -365,16 +365,17 @@ class WhatIf {
   // Command that adds the active effects: one for all of the catalogue, one for each formula.
   get commandText() {
     const {commands, effects, coefficients} = this.item;
-    const on = [...this.on].map((e) => effects[e]).filter(({argument}) => argument);
+    const on = [...this.on].sort((a, b) => a - b).map((e) => effects[e]).filter(({argument}) => argument);
     if (!on.length || !commands.add) return '';
     const catalogue = on.filter(({isFormula}) => !isFormula).map(({argument}) => argument).join(' ');
     const added = [...(catalogue ? [catalogue] : []), ...on.filter(({isFormula}) => isFormula).map(({argument}) => argument)];
-    const name = (n) => `${commands.stem}-extended${n + 1 === added.length ? '' : `-${n + 1}`}.toml`;
+    const stem = [commands.stem, ...on.map(({id}) => id.replace(/[^\w-]/g, '_'))].join('-');
+    const name = (n) => `${stem}${n + 1 === added.length ? '' : `-${n + 1}`}.toml`;
     const lines = added.map((argument, n) =>
       `${commands.add} ${argument} -m ${n ? name(n - 1) : commands.model} ${commands.with} -o ${name(n)}`);
     const held = on.flatMap(({first, count}) => coefficients.slice(first, first + count)
       .filter(({fixed}) => fixed).map(({argument}) => ` --fix ${argument}`)).join('');
-    return [...lines, `${commands.refit} -m ${name(added.length - 1)}${held} -o ${commands.stem}-refitted.toml`].join(' && \\\n  ');
+    return [...lines, `${commands.refit} -m ${name(added.length - 1)}${held} -o ${stem}-refitted.toml`].join(' && \\\n  ');
   }
 
   showCommand() {

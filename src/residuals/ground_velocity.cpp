@@ -26,8 +26,7 @@ GroundVelocity read_as_recorded(const Flight& flight, const ModelDefinition& mod
   velocity = {{both}, {both}};
   for (std::size_t i = 0; i < east.values.size(); ++i) {
     velocity.speed.values.push_back(std::hypot(east.values[i], north.values[i]));
-    velocity.track.values.push_back(std::atan2(east.values[i], north.values[i]) /
-                                    constants::radians_per_degree);
+    velocity.track.values.push_back(std::atan2(east.values[i], north.values[i]) / degree);
   }
   return velocity;
 }

@@ -1,6 +1,7 @@
 #include "residuals/masks.hpp"
 
 #include <pcor/numerics/noise.hpp>
+#include <pcor/physics/lams.hpp>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -15,7 +16,6 @@ namespace {
 constexpr double lock_departure = 6.0;  // robust standard deviations
 constexpr double min_deviation = 0.1;   // m/s
 constexpr double by_angles = 0.03;      // relative airspeed: a static defect of 6 % of q
-constexpr double max_off = 0.15;        // relative airspeed: a static defect of three tenths of q
 constexpr double scale_of_cauchy = 2.385;
 constexpr int rounds = 20;
 constexpr double min_eigenvalue = 1e-9;
@@ -55,7 +55,7 @@ std::vector<std::size_t> find_unlocked(const std::vector<double>& beam, const st
   std::vector<bool> is_unlocked(samples.size(), true);
   std::vector<std::size_t> near;
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (std::abs(factors[k] / usual - 1.0) < max_off) near.push_back(k);
+    if (std::abs(factors[k] / usual - 1.0) < max_lams_departure) near.push_back(k);
   }
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(near.size()), 3);
   Eigen::VectorXd recorded(columns.rows());

@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -15,6 +16,30 @@ inline constexpr int jet_width = 4;
 
 /// Number and its derivatives with respect to a few parameters.
 using Jet = ceres::Jet<double, jet_width>;
+
+/// Parameter, and the destination of derivatives by it.
+struct ColumnOfParameter {
+  std::size_t parameter;
+  double* values;
+};
+
+/// Derivatives by dual numbers. `evaluate(dual, out)` computes the `count` values for dual parameters.
+template <class Evaluate>
+void differentiate(std::size_t count, const std::vector<double>& parameters,
+                   const std::vector<ColumnOfParameter>& columns, const Evaluate& evaluate) {
+  std::vector<Jet> out(count);
+  for (std::size_t first = 0; first < columns.size(); first += jet_width) {
+    const std::size_t width = std::min<std::size_t>(jet_width, columns.size() - first);
+    std::vector<Jet> dual(parameters.begin(), parameters.end());
+    for (std::size_t k = 0; k < width; ++k)
+      dual[columns[first + k].parameter].v[static_cast<Eigen::Index>(k)] = 1.0;
+    evaluate(static_cast<const Jet*>(dual.data()), out.data());
+    for (std::size_t k = 0; k < width; ++k) {
+      for (std::size_t i = 0; i < count; ++i)
+        columns[first + k].values[i] = out[i].v[static_cast<Eigen::Index>(k)];
+    }
+  }
+}
 
 class LamsOnSamples;
 

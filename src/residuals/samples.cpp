@@ -114,8 +114,8 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
       attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, min_airspeed);
   if (!lift) {
     samples.notes.emplace_back(
-        "flap position is not recorded and could not be inferred; approach samples may be included. Exclude "
-        "them with --min-airspeed or --intervals");
+        "exclude approaches with --min-airspeed or --intervals: the flap position is not recorded and could "
+        "not be inferred");
     return;
   }
   for (const bool is_out : lift->out) samples.flaps.push_back(is_out ? 100.0 : 0.0);
@@ -298,6 +298,7 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   samples.time = record_times(flight);
   samples.notes = flight.file().notes();
   for (Note& note : notes_on_law(flight, model)) samples.notes.push_back(std::move(note));
+  note_other_units(flight, model, samples.notes);
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
   samples.latitude = read_role(flight, model, Quantity::latitude).values;

@@ -53,13 +53,14 @@ Statistics ResidualSums::statistics() const {
     constexpr double known = 1.0;  // hPa
     const bool has_rows = left(1, 1) > rank_limit * left(0, 0);
     const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
-    result.bias_error = has_rows ? std::sqrt(both.sum()) : nan;
-    // A lack in delta-p is an excess of the corrected static pressure. An undetermined level stays as
-    // measured.
+    // The noise of GPS explains the residual, or the error is larger by what it does not explain (Birge 1932).
+    const double birge = std::fmax(1.0, result.scatter() / result.noise_rms);
+    result.bias_error = has_rows ? birge * std::sqrt(both.sum()) : nan;
+    // Sign of a residual: positive if delta-p is too small. An undetermined level stays as measured.
     if (!has_rows)
       result.bias = nan;
     else if (result.bias_error < known)
-      result.bias = -both.dot(left.col(2).head(2));
+      result.bias = both.dot(left.col(2).head(2));
   }
   return result;
 }

@@ -18,28 +18,45 @@
 namespace pcor::internal {
 namespace {
 
-bool is_same(const UnitConversion& a, const UnitConversion& b) {
+bool is_same(double a, double b) {
   constexpr double rounding = 1e-9;
-  return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
-         std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
+  return std::abs(a - b) <= rounding * std::abs(a);
 }
 
-/// The unit in the model replaces the unit in the file. Either may be wrong.
-void note_other_unit(const VariableInfo& variable, const QuantityInfo& role, const std::string& stated,
-                     Notes& notes) {
-  const std::string unit(role.unit);
-  if (stated.empty() || !is_known_unit(variable.units) || !is_convertible(stated, unit)) return;
-  const bool same =
-      is_convertible(variable.units, unit) &&
-      is_same(UnitConversion::between(variable.units, unit, {}), UnitConversion::between(stated, unit, {}));
-  if (!same) {
-    notes.push_back(warning_note(fmt::format(
-        "{} is read in {}, as stated by the model or the data of the aircraft; the unit in the file is {}",
-        variable.name, quote(stated), quote(variable.units))));
+/// The unit in the model replaces the unit in the file. Either may be wrong. A sign that the aircraft's data
+/// state is known.
+void note_other_unit(const Flight& flight, const ModelDefinition& file, const VariableNaming& family,
+                     Quantity role, Notes& notes) {
+  const std::string& name = file.variables.at(role);
+  const std::string stated = unit_of_role(file, family, role);
+  if (stated.empty() || !flight.has(name)) return;
+  const std::string& recorded = flight.variable(name).units;
+  const std::string unit(info_of(role).unit);
+  if (!is_known_unit(recorded) || !is_convertible(stated, unit)) return;
+  if (is_convertible(recorded, unit)) {
+    const UnitConversion a = UnitConversion::between(recorded, unit, {});
+    const UnitConversion b = UnitConversion::between(stated, unit, {});
+    const bool same_scale =
+        is_same(a.scale(), b.scale()) || (stated == family.unit_of(name) && is_same(a.scale(), -b.scale()));
+    if (same_scale && is_same(a.offset(), b.offset())) return;
   }
+  Note note = warning_note(
+      fmt::format("{} is read in {} in place of {}: [units] of the model or the data of the aircraft say so",
+                  name, quote(stated), quote(recorded)));
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+}
+
+/// Whether model and flight state different aircraft.
+bool are_of_two_aircraft(const ModelDefinition& file, const Flight& flight) {
+  return !file.model.aircraft.empty() && !flight.aircraft().empty() && !is_of_aircraft(file, flight);
 }
 
 }  // namespace
+
+void note_other_units(const Flight& flight, const ModelDefinition& file, Notes& notes) {
+  const VariableNaming& family = family_of(file, flight);
+  for (const auto& entry : file.variables) note_other_unit(flight, file, family, entry.first, notes);
+}
 
 std::vector<Quantity> roles_of(const ModelDefinition& file, bool with_laser) {
   std::vector<Quantity> roles = file.roles();
@@ -62,7 +79,15 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
     const QuantityInfo& info = info_of(role);
     const std::string& variable = file.variables.at(role);
     const std::string unit = unit_of_role(file, family, role);
-    if (flight.has(variable)) note_other_unit(flight.variable(variable), info, unit, notes);
+    if (!flight.has(variable) && are_of_two_aircraft(file, flight)) {
+      throw Error(
+          Error::Code::variable,
+          fmt::format("{}: the model '{}' is of the aircraft '{}', the flight of '{}', which has no {}; "
+                      "give a model of that aircraft: pcor inspect lists them",
+                      flight.path().string(), file.model.name, file.model.aircraft, flight.aircraft(),
+                      variable));
+    }
+    note_other_unit(flight, file, family, role, notes);
     return believed(flight.conversion(variable, std::string(info.unit), std::string(info.name), unit), info);
   };
   std::vector<ModelInput> inputs;
@@ -136,11 +161,9 @@ Notes notes_on_law(const Flight& flight, const ModelDefinition& file) {
         fmt::format("the law is valid {} {}, the flight is of {}; choose a model of its time in data/models",
                     early ? "from" : "until", early ? law.valid_from : law.valid_to, day)));
   }
-  const std::string& expected = file.model.aircraft;
-  const std::string actual = flight.aircraft();
-  if (!expected.empty() && !actual.empty() && !is_of_aircraft(file, flight)) {
-    notes.push_back(
-        warning_note(fmt::format("the model is of the aircraft '{}', the flight of '{}'", expected, actual)));
+  if (are_of_two_aircraft(file, flight)) {
+    notes.push_back(warning_note(fmt::format("the model is of the aircraft '{}', the flight of '{}'",
+                                             file.model.aircraft, flight.aircraft())));
   }
   return notes;
 }

@@ -29,6 +29,9 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles);
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, Notes& notes);
 
+/// Adds to `notes` each role whose unit in the file is replaced by that of the model.
+void note_other_units(const Flight& flight, const ModelDefinition& file, Notes& notes);
+
 /// Adds to `notes` the number of samples of an input that are treated as missing without a mark in the file,
 /// and the reason; no note without such samples.
 void note_excluded(const ModelInput& input, const RejectedCounts& excluded, Notes& notes);

@@ -12,61 +12,50 @@ namespace {
 // HARCO). Wing area, Mach limit, cabin: manufacturer's data. Radomes: NCAR processing algorithms sec. 4.5.
 // Envelope: speeds and heights of research flights (memo, QAtools). Drag, power, fuel flow, flaps: estimates.
 
-AircraftInfo make_c130() {
-  AircraftInfo a;
-  a.type = "C-130";
-  a.registration = "N130AR";
-  a.thermometer = {"TTRR", {0.95, 0.0, 0.0, 0.0}};
-  a.second_thermometer = {"RTF1", {0.9959, 0.0283, 0.0374, 0.0762}};
-  a.wing_area = 162.1;
-  a.lift_slope = 0.0905;  // this and the next fitted to the angles of the memo's envelope at 56 t
-  a.zero_lift = -4.3;
-  a.drag_constant = 0.035;
-  a.induced_drag = 0.045;
-  a.weight = 58000.0;
-  a.fuel_flow = 0.6;
-  a.power = 11.0e6;
-  a.cabin_differential = 517.0;  // 7.5 psi
-  a.min_speed = 75.0;
-  a.max_speed = 155.0;
-  a.lift_off_speed = 65.0;
-  a.max_mach = 0.62;
-  a.ceiling = 9000.0;
-  a.climb_rate = 5.0;
-  a.speed_run_low = 98.0;
-  a.speed_run_high = 150.0;
-  a.speed_run_rate = 0.25;
-  a.attack = {5.776, 15.031, 0.0};
-  a.sideslip = {-0.012004, 12.2115, 0.0};
-  return a;
-}
+struct AircraftNumber {
+  double AircraftInfo::*member;
+  double c130, gv;
+};
 
-AircraftInfo make_gv() {
+constexpr AircraftNumber numbers[] = {
+    {&AircraftInfo::wing_area, 162.1, 105.6},
+    // The next two are fitted: C-130 to the angles of the memo's envelope at 56 t, GV to 2.5 deg in cruise.
+    {&AircraftInfo::lift_slope, 0.0905, 0.085},
+    {&AircraftInfo::zero_lift, -4.3, -0.4},
+    {&AircraftInfo::drag_constant, 0.035, 0.018},
+    {&AircraftInfo::induced_drag, 0.045, 0.050},
+    {&AircraftInfo::weight, 58000.0, 36000.0},
+    {&AircraftInfo::fuel_flow, 0.6, 0.36},
+    {&AircraftInfo::power, 11.0e6, 18.0e6},
+    {&AircraftInfo::cabin_differential, 517.0, 701.0},  // 7.5 psi, 10.17 psi
+    {&AircraftInfo::min_speed, 75.0, 110.0},
+    {&AircraftInfo::max_speed, 155.0, 260.0},
+    {&AircraftInfo::lift_off_speed, 65.0, 75.0},
+    {&AircraftInfo::max_mach, 0.62, 0.885},
+    {&AircraftInfo::ceiling, 9000.0, 15000.0},
+    {&AircraftInfo::climb_rate, 5.0, 8.0},
+    {&AircraftInfo::speed_run_low, 98.0, 158.0},
+    {&AircraftInfo::speed_run_high, 150.0, 225.0},
+    {&AircraftInfo::speed_run_rate, 0.25, 0.35},
+};
+
+AircraftInfo make(Scenario::Aircraft aircraft) {
+  const bool is_c130 = aircraft == Scenario::Aircraft::c130;
   AircraftInfo a;
-  a.type = "GV";
-  a.registration = "N677F";
-  a.thermometer = {"TTHR1", {0.985, 0.0, 0.0, 0.0}};
-  a.second_thermometer = {"RTH1", {0.988, 0.053, 0.090, 0.091}};
-  a.wing_area = 105.6;
-  a.lift_slope = 0.085;  // this and the next fitted to 2.5 deg in cruise
-  a.zero_lift = -0.4;
-  a.drag_constant = 0.018;
-  a.induced_drag = 0.050;
-  a.weight = 36000.0;
-  a.fuel_flow = 0.36;
-  a.power = 18.0e6;
-  a.cabin_differential = 701.0;  // 10.17 psi
-  a.min_speed = 110.0;
-  a.max_speed = 260.0;
-  a.lift_off_speed = 75.0;
-  a.max_mach = 0.885;
-  a.ceiling = 15000.0;
-  a.climb_rate = 8.0;
-  a.speed_run_low = 158.0;
-  a.speed_run_high = 225.0;
-  a.speed_run_rate = 0.35;
-  a.attack = {5.5156, 19.07, 2.08};
-  a.sideslip = {-0.052888, 21.15507, 0.0};
+  a.type = is_c130 ? "C-130" : "GV";
+  a.registration = is_c130 ? "N130AR" : "N677F";
+  for (const AircraftNumber& number : numbers) a.*number.member = is_c130 ? number.c130 : number.gv;
+  if (is_c130) {
+    a.thermometer = {"TTRR", {0.95, 0.0, 0.0, 0.0}};
+    a.second_thermometer = {"RTF1", {0.9959, 0.0283, 0.0374, 0.0762}};
+    a.attack = {5.776, 15.031, 0.0};
+    a.sideslip = {-0.012004, 12.2115, 0.0};
+  } else {
+    a.thermometer = {"TTHR1", {0.985, 0.0, 0.0, 0.0}};
+    a.second_thermometer = {"RTH1", {0.988, 0.053, 0.090, 0.091}};
+    a.attack = {5.5156, 19.07, 2.08};
+    a.sideslip = {-0.052888, 21.15507, 0.0};
+  }
   return a;
 }
 
@@ -80,8 +69,8 @@ double Thermometer::recovery_factor(double mach) const {
 }
 
 const AircraftInfo& info_of(Scenario::Aircraft aircraft) {
-  static const AircraftInfo c130 = make_c130();
-  static const AircraftInfo gv = make_gv();
+  static const AircraftInfo c130 = make(Scenario::Aircraft::c130);
+  static const AircraftInfo gv = make(Scenario::Aircraft::gv);
   return aircraft == Scenario::Aircraft::c130 ? c130 : gv;
 }
 

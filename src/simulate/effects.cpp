@@ -30,31 +30,38 @@ void add_to_law(const Effect& effect, const Truth&, SystemFaults* system, Faults
   system->law.*find_fault(effect.id)->term += effect.parameters.begin()->second;
 }
 
-template <double SystemFaults::*Fault>
-void add_to_system(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
-  system->*Fault += effect.parameters.begin()->second;
+/// The fault of the pair of pressures, or of the instruments.
+template <class Fault>
+Fault& fault_of(Fault SystemFaults::*fault, SystemFaults* system, Faults&) {
+  return system->*fault;
+}
+template <class Fault>
+Fault& fault_of(Fault Faults::*fault, SystemFaults*, Faults& faults) {
+  return faults.*fault;
 }
 
-template <double Faults::*Fault>
-void add_to_instruments(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
-  faults.*Fault += effect.parameters.begin()->second;
+template <auto fault>
+void add_number(const Effect& effect, const Truth&, SystemFaults* system, Faults& faults) {
+  fault_of(fault, system, faults) += effect.parameters.begin()->second;
 }
 
-template <Series SystemFaults::*Error>
-void add_offset(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  add(system->*Error, truth, [&](std::size_t) { return number(effect, "offset"); });
+/// Adds a value that depends on the truth of each step.
+template <auto fault, double (*value)(const Effect&, const Truth&, std::size_t)>
+void add_series(const Effect& effect, const Truth& truth, SystemFaults* system, Faults& faults) {
+  add(fault_of(fault, system, faults), truth, [&](std::size_t i) { return value(effect, truth, i); });
 }
+
+template <double (*value)(const Effect&, const Truth&, std::size_t)>
+constexpr auto add_defect = add_series<&SystemFaults::static_defect, value>;
+
+double offset(const Effect& effect, const Truth&, std::size_t) { return number(effect, "offset"); }
 
 // l = q k theta^n, theta the angle between the flow and the pitot's axis. Memo footnote 3: below 0.2 % of q
 // to 5 deg.
-void pitot_angle(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double k = number(effect, "k");
-  const double power = number(effect, "power");
-  const double axis = number(effect, "axis");
-  add(system->total_loss, truth, [&](std::size_t i) {
-    const double angle = std::hypot(truth.attack[i] - axis, truth.sideslip[i]);
-    return k * (truth.total_pressure[i] - truth.pressure[i]) * std::pow(angle, power);
-  });
+double pitot_angle(const Effect& effect, const Truth& truth, std::size_t i) {
+  const double angle = std::hypot(truth.attack[i] - number(effect, "axis"), truth.sideslip[i]);
+  return number(effect, "k") * (truth.total_pressure[i] - truth.pressure[i]) *
+         std::pow(angle, number(effect, "power"));
 }
 
 void transducer_thermal(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
@@ -71,66 +78,48 @@ void time_drift(const Effect& effect, const Truth& truth, SystemFaults* system, 
   add(system->dynamic_error, truth, [&](std::size_t i) { return number(effect, "dynamic") * hours(i); });
 }
 
-void flaps_gear(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+double flaps_gear(const Effect& effect, const Truth& truth, std::size_t i) {
   constexpr double full = 50.0;  // percent
-  const double defect = number(effect, "defect");
-  add(system->static_defect, truth, [&](std::size_t i) { return defect * truth.flaps[i] / full; });
+  return number(effect, "defect") * truth.flaps[i] / full;
 }
 
-void thrust(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double defect = number(effect, "defect");
-  add(system->static_defect, truth, [&](std::size_t i) { return defect * 0.01 * truth.torque[i]; });
+double thrust(const Effect& effect, const Truth& truth, std::size_t i) {
+  return number(effect, "defect") * 0.01 * truth.torque[i];
 }
 
 // The vortices of the wing have images below the ground, at 2 h: far above it d falls as (b/4h)^2.
-void ground_effect(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double defect = number(effect, "defect");
-  const double span = number(effect, "span");
-  add(system->static_defect, truth, [&](std::size_t i) {
-    const double ratio = 4.0 * truth.height[i] / span;
-    return defect / (1.0 + ratio * ratio);
-  });
+double ground_effect(const Effect& effect, const Truth& truth, std::size_t i) {
+  const double ratio = 4.0 * truth.height[i] / number(effect, "span");
+  return number(effect, "defect") / (1.0 + ratio * ratio);
 }
 
 // Weight and inertia of the air between the port and the transducer `below` and `behind` it, at the
 // temperature of the bay: dp = rho (f_normal below + f_forward behind), with the specific forces f measured
 // by an accelerometer.
-void line_head(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double below = number(effect, "below");
-  const double behind = number(effect, "behind");
-  add(system->static_head, truth, [&](std::size_t i) {
-    const Air line{truth.pressure[i], truth.bay_temperature[i], 0.0};
-    const double normal = truth.normal_acceleration[i] + constants::standard_gravity;
-    return density(line) * (normal * below + truth.forward_acceleration[i] * behind) / pascal_per_hpa;
-  });
+double line_head(const Effect& effect, const Truth& truth, std::size_t i) {
+  const Air line{truth.pressure[i], truth.bay_temperature[i], 0.0};
+  const double normal = truth.normal_acceleration[i] + constants::standard_gravity;
+  return density(line) *
+         (normal * number(effect, "below") + truth.forward_acceleration[i] * number(effect, "behind")) /
+         pascal_per_hpa;
 }
 
-void load_factor(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double per_g = number(effect, "per_g");
-  add(system->static_defect, truth,
-      [&](std::size_t i) { return per_g * truth.normal_acceleration[i] / constants::standard_gravity; });
+double load_factor(const Effect& effect, const Truth& truth, std::size_t i) {
+  return number(effect, "per_g") * truth.normal_acceleration[i] / constants::standard_gravity;
 }
 
-void roll_static(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double defect = number(effect, "defect");
-  add(system->static_defect, truth,
-      [&](std::size_t i) { return defect * std::sin(constants::radians_per_degree * truth.roll[i]); });
+double roll_static(const Effect& effect, const Truth& truth, std::size_t i) {
+  return number(effect, "defect") * std::sin(constants::radians_per_degree * truth.roll[i]);
 }
 
-void static_transonic(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
-  const double strength = number(effect, "strength");
-  const double onset = number(effect, "onset");
-  const double power = number(effect, "power");
-  add(system->static_defect, truth, [&](std::size_t i) {
-    return strength * truth.pressure[i] * std::pow(std::max(0.0, truth.mach[i] - onset), power);
-  });
+double static_transonic(const Effect& effect, const Truth& truth, std::size_t i) {
+  return number(effect, "strength") * truth.pressure[i] *
+         std::pow(std::max(0.0, truth.mach[i] - number(effect, "onset")), number(effect, "power"));
 }
 
-void qcr_angle(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
-  add(faults.radome_loss, truth, [&](std::size_t i) {
-    return number(effect, "attack") * truth.attack[i] * truth.attack[i] +
-           number(effect, "sideslip") * truth.sideslip[i] * truth.sideslip[i];
-  });
+double qcr_angle(const Effect& effect, const Truth& truth, std::size_t i) {
+  return number(effect, "attack") * truth.attack[i] * truth.attack[i] +
+         number(effect, "sideslip") * truth.sideslip[i] * truth.sideslip[i];
 }
 
 void adif_drift(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
@@ -141,48 +130,34 @@ void adif_drift(const Effect& effect, const Truth& truth, SystemFaults*, Faults&
   });
 }
 
-void lams_elevation(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
-  add(faults.lams_elevation, truth, [&](std::size_t) { return number(effect, "error"); });
-}
+double lams_elevation(const Effect& effect, const Truth&, std::size_t) { return number(effect, "error"); }
 
 // The wing bends with the lift that it carries more than at the start.
-void lams_pod_flex(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
-  const double per_tonne = number(effect, "per_tonne");
-  add(faults.lams_elevation, truth, [&](std::size_t i) {
-    const double load = 1.0 + truth.normal_acceleration[i] / constants::standard_gravity;
-    return per_tonne * 1e-3 * (load * truth.weight[i] - truth.weight[0]);
-  });
+double lams_pod_flex(const Effect& effect, const Truth& truth, std::size_t i) {
+  const double load = 1.0 + truth.normal_acceleration[i] / constants::standard_gravity;
+  return number(effect, "per_tonne") * 1e-3 * (load * truth.weight[i] - truth.weight[0]);
 }
 
-void lams_induction(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
-  add(faults.lams_speed, truth, [&](std::size_t i) {
-    return -truth.airspeed[i] * (number(effect, "fraction") + number(effect, "per_attack") * truth.attack[i]);
-  });
+double lams_induction(const Effect& effect, const Truth& truth, std::size_t i) {
+  return -truth.airspeed[i] * (number(effect, "fraction") + number(effect, "per_attack") * truth.attack[i]);
 }
 
-void lams_cloud(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
-  const double error = number(effect, "error");
-  add(faults.lams_speed, truth, [&](std::size_t i) { return in_cloud(truth, i) ? error : 0.0; });
+double lams_cloud(const Effect& effect, const Truth& truth, std::size_t i) {
+  return in_cloud(truth, i) ? number(effect, "error") : 0.0;
 }
 
-void temp_offset(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
-  add(faults.temperature_error, truth, [&](std::size_t i) {
-    return number(effect, "offset") + number(effect, "slope") * (truth.temperature[i] - constants::ice_point);
-  });
+double temp_offset(const Effect& effect, const Truth& truth, std::size_t i) {
+  return number(effect, "offset") + number(effect, "slope") * (truth.temperature[i] - constants::ice_point);
 }
 
 // De-icing heat warms the element in inverse relation to the mass flow, of which Z is a measure; there are no
 // measurements below 0.18.
-void temp_deice_heat(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+double temp_deice_heat(const Effect& effect, const Truth& truth, std::size_t i) {
   constexpr double flow_scale = 0.269589;  // K/hPa
   constexpr double min_flow = 0.18;
   constexpr double usual_flow = 0.3;
-  const double heat = number(effect, "heat");
-  const double power = number(effect, "power");
-  add(faults.temperature_error, truth, [&](std::size_t i) {
-    const double flow = flow_scale * truth.pressure[i] * truth.mach[i] / truth.temperature[i];
-    return heat * std::pow(std::max(flow, min_flow) / usual_flow, power);
-  });
+  const double flow = flow_scale * truth.pressure[i] * truth.mach[i] / truth.temperature[i];
+  return number(effect, "heat") * std::pow(std::max(flow, min_flow) / usual_flow, number(effect, "power"));
 }
 
 // Wet within a second, dry again in the time stated.
@@ -255,26 +230,29 @@ const std::vector<FaultInfo>& fault_info() {
       {"static-transonic",
        Target::system,
        {{"strength", "1"}, {"onset", "1", 0.82}, {"power", "1", 2.0}},
-       static_transonic},
-      {"flaps-gear", Target::system, {{"defect", "hPa at 50 %"}}, flaps_gear},
-      {"speedbrake-thrust", Target::system, {{"defect", "hPa at 100 %"}}, thrust},
+       add_defect<static_transonic>},
+      {"flaps-gear", Target::system, {{"defect", "hPa at 50 %"}}, add_defect<flaps_gear>},
+      {"speedbrake-thrust", Target::system, {{"defect", "hPa at 100 %"}}, add_defect<thrust>},
       {"ground-effect",
        Target::system,
        {{"defect", "hPa at the ground"}, {"span", "m", 40.4}},
-       ground_effect},
-      {"line-head", Target::system, {{"below", "m", 0.0}, {"behind", "m", 0.0}}, line_head},
-      {"load-factor", Target::system, {{"per_g", "hPa"}}, load_factor},
-      {"roll-static", Target::system, {{"defect", "hPa"}}, roll_static},
+       add_defect<ground_effect>},
+      {"line-head",
+       Target::system,
+       {{"below", "m", 0.0}, {"behind", "m", 0.0}},
+       add_series<&SystemFaults::static_head, line_head>},
+      {"load-factor", Target::system, {{"per_g", "hPa"}}, add_defect<load_factor>},
+      {"roll-static", Target::system, {{"defect", "hPa"}}, add_defect<roll_static>},
       {"pitot-angle",
        Target::system,
        {{"k", "1/deg^power"}, {"power", "1", 2.0}, {"axis", "deg", 0.0}},
-       pitot_angle},
-      {"static-lag", Target::system, {{"tau", "s"}}, add_to_system<&SystemFaults::static_lag>},
-      {"total-lag", Target::system, {{"tau", "s"}}, add_to_system<&SystemFaults::total_lag>},
-      {"static-leak", Target::system, {{"fraction", "1"}}, add_to_system<&SystemFaults::leak>},
-      {"qcf-zero", Target::system, {{"offset", "hPa"}}, add_offset<&SystemFaults::dynamic_error>},
-      {"qcf-gain", Target::system, {{"gain", "1"}}, add_to_system<&SystemFaults::dynamic_gain>},
-      {"psfd-bias", Target::system, {{"offset", "hPa"}}, add_offset<&SystemFaults::static_error>},
+       add_series<&SystemFaults::total_loss, pitot_angle>},
+      {"static-lag", Target::system, {{"tau", "s"}}, add_number<&SystemFaults::static_lag>},
+      {"total-lag", Target::system, {{"tau", "s"}}, add_number<&SystemFaults::total_lag>},
+      {"static-leak", Target::system, {{"fraction", "1"}}, add_number<&SystemFaults::leak>},
+      {"qcf-zero", Target::system, {{"offset", "hPa"}}, add_series<&SystemFaults::dynamic_error, offset>},
+      {"qcf-gain", Target::system, {{"gain", "1"}}, add_number<&SystemFaults::dynamic_gain>},
+      {"psfd-bias", Target::system, {{"offset", "hPa"}}, add_series<&SystemFaults::static_error, offset>},
       {"transducer-thermal",
        Target::system,
        {{"static", "hPa/K", 0.0}, {"dynamic", "hPa/K", 0.0}, {"reference", "K", 290.0}},
@@ -283,28 +261,37 @@ const std::vector<FaultInfo>& fault_info() {
       {"qcr-angle",
        Target::instrument,
        {{"attack", "hPa/deg2", 0.0}, {"sideslip", "hPa/deg2", 0.0}},
-       qcr_angle},
+       add_series<&Faults::radome_loss, qcr_angle>},
       {"adif-drift",
        Target::instrument,
        {{"gain", "1", 0.0}, {"offset", "1", 0.0}, {"per_hour", "1/h", 0.0}},
        adif_drift},
-      {"lams-elevation", Target::instrument, {{"error", "deg"}}, lams_elevation},
-      {"lams-azimuth", Target::instrument, {{"error", "deg"}}, add_to_instruments<&Faults::lams_azimuth>},
-      {"lams-pod-flex", Target::instrument, {{"per_tonne", "deg/t"}}, lams_pod_flex},
-      {"lams-scale", Target::instrument, {{"scale", "1"}}, add_to_instruments<&Faults::lams_scale>},
+      {"lams-elevation",
+       Target::instrument,
+       {{"error", "deg"}},
+       add_series<&Faults::lams_elevation, lams_elevation>},
+      {"lams-azimuth", Target::instrument, {{"error", "deg"}}, add_number<&Faults::lams_azimuth>},
+      {"lams-pod-flex",
+       Target::instrument,
+       {{"per_tonne", "deg/t"}},
+       add_series<&Faults::lams_elevation, lams_pod_flex>},
+      {"lams-scale", Target::instrument, {{"scale", "1"}}, add_number<&Faults::lams_scale>},
       {"lams-induction",
        Target::instrument,
        {{"fraction", "1", 0.0}, {"per_attack", "1/deg", 0.0}},
-       lams_induction},
-      {"lams-cloud", Target::instrument, {{"error", "m/s"}}, lams_cloud},
-      {"temp-offset", Target::instrument, {{"offset", "K", 0.0}, {"slope", "1", 0.0}}, temp_offset},
-      {"recovery-factor", Target::instrument, {{"error", "1"}}, add_to_instruments<&Faults::recovery>},
-      {"temp-lag", Target::instrument, {{"tau", "s"}}, add_to_instruments<&Faults::temperature_lag>},
+       add_series<&Faults::lams_speed, lams_induction>},
+      {"lams-cloud", Target::instrument, {{"error", "m/s"}}, add_series<&Faults::lams_speed, lams_cloud>},
+      {"temp-offset",
+       Target::instrument,
+       {{"offset", "K", 0.0}, {"slope", "1", 0.0}},
+       add_series<&Faults::temperature_error, temp_offset>},
+      {"recovery-factor", Target::instrument, {{"error", "1"}}, add_number<&Faults::recovery>},
+      {"temp-lag", Target::instrument, {{"tau", "s"}}, add_number<&Faults::temperature_lag>},
       {"temp-wetting", Target::instrument, {{"error", "K"}, {"drying", "s", 10.0}}, temp_wetting},
       {"temp-deice-heat",
        Target::instrument,
        {{"heat", "K at Z = 0.3"}, {"power", "1", -1.78}},
-       temp_deice_heat},
+       add_series<&Faults::temperature_error, temp_deice_heat>},
       {"humidity-error", Target::instrument, {{"gain", "1", 0.0}, {"dew_point", "K", 0.0}}, humidity_error},
       {"clock-skew", Target::variable, {{"seconds", "s"}}, clock_skew},
       {"sensor-response", Target::variable, {{"tau", "s"}}, sensor_response},

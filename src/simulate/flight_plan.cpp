@@ -208,49 +208,41 @@ class Plan {
 }  // namespace
 
 void complete(Leg& leg, const AircraftInfo& aircraft) {
-  const auto usual = [](double& number, double value) {
-    if (std::isnan(number)) number = value;
+  const struct {
+    Kind kind;
+    double Leg::*number;
+    double value;
+  } usual[] = {
+      {Kind::ground, &Leg::duration, 120.0},
+      {Kind::take_off, &Leg::altitude, 1000.0},
+      {Kind::take_off, &Leg::speed, 1.25 * aircraft.min_speed},
+      {Kind::take_off, &Leg::rate, aircraft.climb_rate},
+      {Kind::take_off, &Leg::flaps, 50.0},
+      {Kind::climb, &Leg::rate, aircraft.climb_rate},
+      {Kind::descent, &Leg::rate, aircraft.climb_rate},
+      {Kind::level, &Leg::duration, 300.0},
+      {Kind::level, &Leg::flaps, 0.0},
+      {Kind::pitch, &Leg::period, 20.0},
+      {Kind::pitch, &Leg::cycles, 8.0},
+      {Kind::pitch, &Leg::amplitude, 4.0},
+      {Kind::yaw, &Leg::period, 12.0},
+      {Kind::yaw, &Leg::cycles, 12.0},
+      {Kind::yaw, &Leg::amplitude, 4.0},
+      {Kind::speed_run, &Leg::low, aircraft.speed_run_low},
+      {Kind::speed_run, &Leg::high, aircraft.speed_run_high},
+      {Kind::speed_run, &Leg::rate, aircraft.speed_run_rate},
+      {Kind::reverse_heading, &Leg::duration, 240.0},
+      {Kind::reverse_heading, &Leg::roll, 20.0},
+      {Kind::circle, &Leg::angle, 360.0},
+      {Kind::circle, &Leg::roll, 26.7},
+      {Kind::turn, &Leg::angle, 90.0},
+      {Kind::turn, &Leg::roll, 20.0},
+      {Kind::landing, &Leg::speed, 1.1 * aircraft.lift_off_speed},
+      {Kind::landing, &Leg::rate, 4.0},
+      {Kind::landing, &Leg::flaps, 50.0},
   };
-  switch (leg.kind) {
-    case Kind::ground:
-      return usual(leg.duration, 120.0);
-    case Kind::take_off:
-      usual(leg.altitude, 1000.0);
-      usual(leg.speed, 1.25 * aircraft.min_speed);
-      usual(leg.rate, aircraft.climb_rate);
-      return usual(leg.flaps, 50.0);
-    case Kind::climb:
-    case Kind::descent:
-      return usual(leg.rate, aircraft.climb_rate);
-    case Kind::level:
-      usual(leg.duration, 300.0);
-      return usual(leg.flaps, 0.0);
-    case Kind::pitch:
-      usual(leg.period, 20.0);
-      usual(leg.cycles, 8.0);
-      return usual(leg.amplitude, 4.0);
-    case Kind::yaw:
-      usual(leg.period, 12.0);
-      usual(leg.cycles, 12.0);
-      return usual(leg.amplitude, 4.0);
-    case Kind::speed_run:
-      usual(leg.low, aircraft.speed_run_low);
-      usual(leg.high, aircraft.speed_run_high);
-      return usual(leg.rate, aircraft.speed_run_rate);
-    case Kind::reverse_heading:
-      usual(leg.duration, 240.0);
-      return usual(leg.roll, 20.0);
-    case Kind::circle:
-      usual(leg.angle, 360.0);
-      return usual(leg.roll, 26.7);
-    case Kind::turn:
-      usual(leg.angle, 90.0);
-      return usual(leg.roll, 20.0);
-    case Kind::landing:
-      usual(leg.speed, 1.1 * aircraft.lift_off_speed);
-      usual(leg.rate, 4.0);
-      return usual(leg.flaps, 50.0);
-  }
+  for (const auto& [kind, number, value] : usual)
+    if (kind == leg.kind && std::isnan(leg.*number)) leg.*number = value;
 }
 
 FlownPlan fly(const Scenario& scenario) { return Plan(scenario).result(); }

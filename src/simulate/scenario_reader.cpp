@@ -206,8 +206,8 @@ class Reader final : TomlReader {
     const double value = TomlReader::number(entry);
     if (value < domain.minimum || value > domain.maximum) {
       const std::string unit = domain.unit.empty() ? "" : " " + std::string(domain.unit);
-      fail(entry, fmt::format("{} = {}{} is impossible; give a number from {} to {}{}", entry.key, value,
-                              unit, domain.minimum, domain.maximum, unit));
+      fail(entry, "{} = {}{} is impossible; give a number from {} to {}{}", entry.key, value, unit,
+           domain.minimum, domain.maximum, unit);
     }
     return value;
   }
@@ -215,8 +215,7 @@ class Reader final : TomlReader {
   std::string one_of(const Entry& entry, const Names& known) const {
     std::string value = text(entry);
     if (std::find(known.begin(), known.end(), value) == known.end())
-      fail(entry,
-           fmt::format("there is no {} {}; {}", entry.key, quote(value), suggestion_text(value, known)));
+      fail(entry, "there is no {} {}; {}", entry.key, quote(value), suggestion_text(value, known));
     return value;
   }
 
@@ -274,7 +273,7 @@ class Reader final : TomlReader {
 
   void read_seed(const Entry& entry) {
     const std::int64_t seed = whole_number(entry);
-    if (seed < 0) fail(entry, fmt::format("seed = {} is negative; give 0 or more", seed));
+    if (seed < 0) fail(entry, "seed = {} is negative; give 0 or more", seed);
     scenario_.seed = static_cast<std::uint64_t>(seed);
   }
 
@@ -291,7 +290,7 @@ class Reader final : TomlReader {
   void read_rate(const Entry& entry) {
     const std::int64_t rate = whole_number(entry);
     if (rate != 1 && rate != 5 && rate != 25)
-      fail(entry, fmt::format("rate = {} is impossible; give 1, 5 or 25 samples a second", rate));
+      fail(entry, "rate = {} is impossible; give 1, 5 or 25 samples a second", rate);
     scenario_.rate = static_cast<int>(rate);
   }
 
@@ -325,10 +324,10 @@ class Reader final : TomlReader {
             {"law", [&](const Entry& entry) { read_law(entry, system.law); }}});
       for (const auto& [key, name] :
            {std::pair{"static", system.static_pressure}, std::pair{"dynamic", system.dynamic_pressure}}) {
-        if (name.empty()) fail(position, fmt::format("the system has no {} = \"...\"; add it", key));
+        if (name.empty()) fail(position, "the system has no {} = \"...\"; add it", key);
         for (const Scenario::System& other : scenario_.systems) {
           if (name == other.static_pressure || name == other.dynamic_pressure)
-            fail(position, fmt::format("{} belongs to two systems; give each its own", name));
+            fail(position, "{} belongs to two systems; give each its own", name);
         }
       }
       if (system.static_pressure == system.dynamic_pressure)
@@ -368,8 +367,8 @@ class Reader final : TomlReader {
     for (const Entry& entry : entries_of(table(section))) {
       const auto found = scenario_.noise.find(entry.key);
       if (found == scenario_.noise.end()) {
-        fail(entry.position, fmt::format("no variable {} is recorded; {}", quote(entry.key),
-                                         suggestion_text(entry.key, recorded())));
+        fail(entry.position, "no variable {} is recorded; {}", quote(entry.key),
+             suggestion_text(entry.key, recorded()));
       }
       if (entry.node->is_table())
         each(*entry.node->as_table(), "the noise of " + entry.key, numbers(found->second, noise_keys));
@@ -426,25 +425,20 @@ class Reader final : TomlReader {
     if (leg.kind == Kind::landing) flying = false;
     const bool changes_height = leg.kind == Kind::climb || leg.kind == Kind::descent;
     if (changes_height && std::isnan(leg.altitude))
-      fail(position, fmt::format("the {} has no altitude; add altitude = ... (m)", info.name));
+      fail(position, "the {} has no altitude; add altitude = ... (m)", info.name);
     if ((changes_height || leg.kind == Kind::take_off) &&
         leg.altitude < scenario_.atmosphere.ground_height + min_height)
-      fail(position,
-           fmt::format("altitude = {} m is not {} m above the ground; give more", leg.altitude, min_height));
+      fail(position, "altitude = {} m is not {} m above the ground; give more", leg.altitude, min_height);
     if (leg.kind == Kind::climb && leg.altitude <= height)
-      fail(position,
-           fmt::format("the climb to {} m begins at {} m; make it a descent", leg.altitude, height));
+      fail(position, "the climb to {} m begins at {} m; make it a descent", leg.altitude, height);
     if (leg.kind == Kind::descent && leg.altitude >= height)
-      fail(position,
-           fmt::format("the descent to {} m begins at {} m; make it a climb", leg.altitude, height));
+      fail(position, "the descent to {} m begins at {} m; make it a climb", leg.altitude, height);
     if (changes_height || leg.kind == Kind::take_off) height = leg.altitude;
     if (leg.kind == Kind::landing) height = scenario_.atmosphere.ground_height;
     if (std::abs(leg.angle) < 1.0)
-      fail(position, fmt::format("angle = {} deg is not a {}; give 1 deg or more to either side", leg.angle,
-                                 info.name));
+      fail(position, "angle = {} deg is not a {}; give 1 deg or more to either side", leg.angle, info.name);
     if (leg.kind == Kind::speed_run && !(leg.low < leg.high))
-      fail(position,
-           fmt::format("low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high));
+      fail(position, "low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high);
   }
 
   void read_effects(const Entry& section) {
@@ -465,11 +459,11 @@ class Reader final : TomlReader {
       each(items, fmt::format("the effect {}", quote(info.id)), actions);
       for (const FaultParameter& parameter : info.parameters) {
         if (effect.parameters.count(std::string(parameter.key)) == 0)
-          fail(position, fmt::format("{} has no {}; add {} = ... ({})", effect.id, parameter.key,
-                                     parameter.key, parameter.unit));
+          fail(position, "{} has no {}; add {} = ... ({})", effect.id, parameter.key, parameter.key,
+               parameter.unit);
       }
       if (info.target == Target::variable && effect.on.empty())
-        fail(position, fmt::format("{} has no variable; add on = \"VLAMS\" or another", effect.id));
+        fail(position, "{} has no variable; add on = \"VLAMS\" or another", effect.id);
       if (info.id == "unknown" && (effect.of.empty() || effect.location.empty()))
         fail(position,
              R"(unknown needs of = "...", the variable that causes it, and where = "static" or another)");
@@ -494,8 +488,7 @@ class Reader final : TomlReader {
         if (!info.recorded.empty()) known.emplace_back(info.recorded);
         if (!info.name.empty()) known.emplace_back(info.name);
       }
-      fail(entry, fmt::format("no variable {} is simulated; {}", quote(effect.of),
-                              suggestion_text(effect.of, known)));
+      fail(entry, "no variable {} is simulated; {}", quote(effect.of), suggestion_text(effect.of, known));
     });
   }
 
@@ -503,11 +496,11 @@ class Reader final : TomlReader {
   void check_effect(const Scenario::Effect& effect, Position position) const {
     const bool of_clouds = effect.id == "lams-cloud" || effect.id == "temp-wetting";
     if (of_clouds && scenario_.atmosphere.clouds.empty())
-      fail(position, fmt::format("{} needs a cloud; add an [[atmosphere.cloud]]", effect.id));
+      fail(position, "{} needs a cloud; add an [[atmosphere.cloud]]", effect.id);
     if (effect.id != "unknown") return;
     const bool on_systems = effect.location == "static" || effect.location == "total";
     if (!on_systems && !effect.on.empty())
-      fail(position, fmt::format("an effect on the {} has no other target; remove 'on'", effect.location));
+      fail(position, "an effect on the {} has no other target; remove 'on'", effect.location);
     if (effect.parameters.at("scale") == 0.0) fail(position, "scale = 0 is impossible; give another number");
   }
 
@@ -515,8 +508,8 @@ class Reader final : TomlReader {
     if (const std::optional<Entry> entry = entry_of(items, "id")) {
       const std::string id = text(*entry);
       if (const FaultInfo* info = find_fault(id)) return *info;
-      fail(*entry, fmt::format("no effect {} can be simulated; {}", quote(id),
-                               suggestion_text(id, names_of(fault_info(), &FaultInfo::id))));
+      fail(*entry, "no effect {} can be simulated; {}", quote(id),
+           suggestion_text(id, names_of(fault_info(), &FaultInfo::id)));
     }
     fail(position, "the effect has no id; add id = \"static-lag\" or another");
   }
@@ -530,7 +523,7 @@ class Reader final : TomlReader {
         known.push_back(system.dynamic_pressure);
       }
     }
-    if (known.empty()) fail(entry.position, fmt::format("{} has a fixed target; remove 'on'", info.id));
+    if (known.empty()) fail(entry.position, "{} has a fixed target; remove 'on'", info.id);
     return one_of(entry, known);
   }
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -251,9 +252,9 @@ FileDescription description_of(const Scenario& scenario, const SimulationSummary
                             {"FlightNumber", scenario.name},
                             {"simulation_seed", std::to_string(scenario.seed)},
                             {"simulation_legs", legs}};
-  std::string effects;
-  for (const std::string& effect : summary.effects) effects += (effects.empty() ? "" : " ") + effect;
-  if (!effects.empty()) description.attributes.emplace_back("simulation_effects", effects);
+  if (!summary.effects.empty())
+    description.attributes.emplace_back("simulation_effects",
+                                        fmt::format("{}", fmt::join(summary.effects, " ")));
   return description;
 }
 
@@ -280,9 +281,8 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   for (const LegSteps& leg : plan.legs) summary.legs.push_back(describe(leg, plan.truth, scenario.start));
   for (const Scenario::Effect& effect : scenario.effects) summary.effects.push_back(effect.id);
 
-  NewFlight flight;
-  flight.first_time = summary.first_time;
-  FlightWriter writer(output, flight, description_of(scenario, summary, options.history));
+  FlightWriter writer(output, NewFlight{summary.first_time},
+                      description_of(scenario, summary, options.history));
   for (const RecordedVariable& column : columns) {
     writer.define(column.variable);
     const bool truth = column.variable.category == truth_category;

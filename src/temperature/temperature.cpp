@@ -58,9 +58,9 @@ class TemperatureCalibration {
     if (!options_.degree) terms_ = degrees.terms;
     fit();
     describe_flights();
-    write_notes();
     result_.model = with_calibration(model_, result_.likelihood.coefficients,
                                      result_.likelihood.standard_errors, result_.covariance);
+    write_notes();
     write_provenance();
     return std::move(result_);
   }
@@ -469,10 +469,10 @@ class TemperatureCalibration {
     result_.warnings = temperature_warnings(result_);
     if (!result_.worse.empty()) result_.notes.push_back(result_.worse);
     if (!options_.degree && records_.size() < min_for_choice) {
-      result_.notes_on_degree.push_back(
-          fmt::format("{} flight{} cannot be cross-validated: the degree is chosen by the fit of these "
-                      "flights (decrease of -2 ln L above {:.0f} per coefficient); --degree sets it",
-                      records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
+      result_.notes_on_degree.push_back(fmt::format(
+          "set the degree with --degree if you know it: {} flight{} cannot be cross-validated, so "
+          "the fit of these flights chooses it (decrease of -2 ln L above {:.0f} per coefficient)",
+          records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
     }
     const bool attack_is_unknown = prior_.sizes[with_attack] > 0.0 && result_.law_errors.size() < 2;
     for (const Notes& more :

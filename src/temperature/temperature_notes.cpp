@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <map>
 
+#include <pcor/model_io/model_definition.hpp>
 #include "temperature/parts.hpp"
 
 namespace pcor::internal {
@@ -55,12 +56,15 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
   differ(result.parts_by_climb, result.spread_of_climbs, "climbs and descents");
   for (const LawError& error : result.law_errors) {
     if (!is_seen(error)) continue;
+    const bool is_in_model = has_effect(result.model, error.effect);
+    const std::string by = with_error(error.change, error.standard_error);
     warnings.push_back(fmt::format(
-        "heights indicate an error of the static-pressure model: {} of {} is too small by {}, a range of "
-        "{:.2f} hPa over the flights; it was removed before fitting the thermometer, {}refit the model "
-        "first",
-        error.parameter, error.effect, with_error(error.change, error.standard_error), error.range,
-        size_text(error)));
+        "heights indicate an error of the static-pressure model: {}, a range of {:.2f} hPa over the flights; "
+        "it "
+        "was removed before fitting the thermometer, {}{}refit the model first",
+        is_in_model ? fmt::format("{} of {} is too small by {}", error.parameter, error.effect, by)
+                    : fmt::format("delta-p lacks a term like {}, {} = {}", error.effect, error.parameter, by),
+        error.range, size_text(error), is_in_model ? "" : fmt::format("add {} and ", error.effect)));
   }
   if (std::abs(result.humidity_change) > significant_ratio * result.humidity_error) {
     warnings.push_back(

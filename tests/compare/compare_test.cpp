@@ -102,8 +102,12 @@ TEST(Compare, SeparatesTheAtmosphereFromTheBiasAgainstWind) {
   // All parts contain the error of the level; three standard errors of the rms of two independent scores.
   EXPECT_LT(std::sqrt(squares / static_cast<double>(parts)), 1.0 + 3.0 / std::sqrt(2.0 * 2.0));
   // A thousandth of 600 to 1000 hPa; both models have the same noise, estimated separately.
-  const double shift = comparison.models[1].all.bias - comparison.models[0].all.bias;
+  const double shift = comparison.models[0].all.bias - comparison.models[1].all.bias;
   EXPECT_NEAR(shift, 0.75, 0.1);
+  EXPECT_GT(comparison.models[0].all.mean, comparison.models[1].all.mean)
+      << "the measured mean has this sign";
+  EXPECT_THAT(pcor::comparison_report(comparison).title,
+              testing::AllOf(HasSubstr("true law"), HasSubstr("shifted law")));
   EXPECT_LT(comparison.models[0].all.bias_error, 0.2);
   // The residuals as measured keep their scatter.
   const pcor::Statistics& all = comparison.models[0].all;

@@ -1,4 +1,5 @@
-// Variables for the test of unexplained structure, brought to one value a record.
+// Variables for the test of unexplained structure, brought to one value a record, and statements of files
+// about the inputs of their computed variables.
 #include "diagnose/tested_variables.hpp"
 
 #include <gmock/gmock.h>
@@ -79,6 +80,51 @@ TEST_F(RecordedVariables, VariablesThatCoverTheCircleAreAngles) {
   EXPECT_EQ(read("percent", heading).turn, 0.0);
   for (double& value : heading) value /= 15.0;
   EXPECT_EQ(read("hours", heading, 1, {0.0, 24.0}).turn, 24.0);
+}
+
+/// A flight whose variables have these attributes `Dependencies`; an empty text gives no attribute.
+Flight flight_of(const test::TemporaryDirectory& directory,
+                 const std::vector<std::pair<std::string, std::string>>& dependencies) {
+  const std::filesystem::path path = directory / "flight.nc";
+  {
+    test::NetcdfMaker file(path);
+    file.time({0, 1, 2});
+    for (const auto& [name, text] : dependencies) {
+      const int variable = file.series(name, "hPa", {1, 2, 3});
+      if (!text.empty()) file.text(variable, "Dependencies", text);
+    }
+  }
+  return Flight(path);
+}
+
+TEST(ComputedFrom, FollowsChainsOfDependencies) {
+  const test::TemporaryDirectory directory;
+  // As in the files of NCAR: the temperature that is corrected by the pressures, and what is made of it.
+  const Flight flight = flight_of(directory, {{"PSFD", ""},
+                                              {"QCF", ""},
+                                              {"TTRR", ""},
+                                              {"PSXC", "1 PSFD"},
+                                              {"QCXC", "1 QCF"},
+                                              {"ATX", "3 TTRR PSXC QCXC"},
+                                              {"THETA", "2 ATX PSXC"},
+                                              {"ENGTRQ", "0"},
+                                              {"GGALTC", "1 GGALT"}});
+  EXPECT_THAT(computed_from(flight, {"PSFD", "QCF"}), testing::ElementsAre("ATX", "PSXC", "QCXC", "THETA"));
+  EXPECT_THAT(computed_from(flight, {"TTRR"}), testing::ElementsAre("ATX", "THETA"));
+  EXPECT_THAT(computed_from(flight, {"VLAMS"}), testing::IsEmpty());
+}
+
+// A residual against a corrected pressure is measured with the sensors of that pressure.
+TEST(ComputedFrom, IncludesVariablesFromTheSameSensors) {
+  const test::TemporaryDirectory directory;
+  const Flight flight = flight_of(directory, {{"PSFD", ""}, {"PSXC", "1 PSFD"}, {"PALT", "1 PSFD"}});
+  EXPECT_THAT(computed_from(flight, {"PSXC"}), testing::ElementsAre("PALT"));
+}
+
+TEST(ComputedFrom, CircularDependenciesEnd) {
+  const test::TemporaryDirectory directory;
+  const Flight flight = flight_of(directory, {{"PSFD", ""}, {"LATC", "2 LONC PSFD"}, {"LONC", "1 LATC"}});
+  EXPECT_THAT(computed_from(flight, {"PSFD"}), testing::ElementsAre("LATC", "LONC"));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <pcor/fit/refit.hpp>
 
 #include <Eigen/Dense>
-#include <cmath>
 #include <memory>
 #include <vector>
 

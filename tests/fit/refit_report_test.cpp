@@ -2,7 +2,6 @@
 #include <pcor/fit/refit_report.hpp>
 
 #include <cmath>
-#include <string>
 
 namespace pcor {
 namespace {

@@ -54,4 +54,21 @@ TEST(SharedNoise, EachFlightHasItsOwnNoiseLevel) {
   EXPECT_EQ(deviations(0), kept);
 }
 
+TEST(SharedNoise, HasALevelForEachBinAfterOtherOutliersAreExcluded) {
+  const RefitOptions options;
+  const ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
+  const References references = made::pressure_reference();
+  made::Plan plan;
+  plan.defect = made::equation_18;
+  const FlightSet set({made::shared(plan)}, {{}, &serial_communicator()});
+  FitTask task = fit_task(model, references, options, set);
+  task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
+  FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
+  flights.measure_noise(task.start);
+  const std::size_t before = flights.bins(0).size();
+  flights.prepare(Eigen::Vector3d(0.004, 1.0, 0.03));
+  EXPECT_NE(flights.bins(0).size(), before);
+  EXPECT_EQ(static_cast<std::size_t>(flights.noise(0).level[0].size()), flights.bins(0).size());
+}
+
 }  // namespace

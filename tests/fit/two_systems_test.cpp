@@ -3,7 +3,6 @@
 #include <pcor/fit/refit.hpp>
 #include <pcor/simulate/simulate.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>

@@ -7,12 +7,13 @@
 #include <algorithm>
 
 #include "support/temporary_directory.hpp"
+#include "support/values_of.hpp"
 
 using pcor::Flight;
 using pcor::FlightWriter;
 using pcor::RecordBlock;
-using pcor::UnitConversion;
 using pcor::internal::FlightFile;
+using pcor::test::values_of;
 using testing::ElementsAre;
 using testing::IsNan;
 
@@ -29,11 +30,6 @@ class MemoryFile final : public FlightFile {
 
   const std::filesystem::path& path() const override { return path_; }
   int variable_count() const override { return static_cast<int>(variables_.size()); }
-  std::optional<int> find_variable(const std::string& name) const override {
-    for (int i = 0; i < variable_count(); ++i)
-      if (at(i).name == name) return i;
-    return std::nullopt;
-  }
   std::string variable_name(int variable) const override { return at(variable).name; }
   std::vector<int> dimensions_of(int variable) const override {
     return at(variable).values.size() == 3 ? std::vector<int>{0} : std::vector<int>{0, 1};
@@ -47,8 +43,6 @@ class MemoryFile final : public FlightFile {
     return variable != whole_file && name == "units" ? at(variable).units : "";
   }
   std::vector<double> number_attribute(int, const std::string&) const override { return {}; }
-  bool is_numeric(int) const override { return true; }
-  double max_number(int) const override { return 1e300; }
   std::vector<double> missing_values(int) const override { return {-1.0}; }
   std::array<double, 2> valid_range(int) const override { return {-1000.0, 1e10}; }
   void read(int variable, RecordBlock records, double* out) const override {
@@ -67,12 +61,6 @@ class MemoryFile final : public FlightFile {
       {"QCF", "hPa", {60.0, 61.0, 62.0}},
   };
 };
-
-std::vector<double> values_of(const Flight& flight, const std::string& name) {
-  std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
-  flight.read(name, {0, flight.records()}, UnitConversion(), values.data());
-  return values;
-}
 
 TEST(FlightFile, AnyFormatIsReadAsAFlight) {
   const Flight flight(std::make_unique<MemoryFile>(), pcor::TimestampAlignment::begin);

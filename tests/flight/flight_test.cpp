@@ -16,6 +16,7 @@
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
+#include "support/values_of.hpp"
 
 using pcor::Error;
 using pcor::Flight;
@@ -27,6 +28,7 @@ using pcor::test::error_of;
 using pcor::test::IsError;
 using pcor::test::NetcdfMaker;
 using pcor::test::sequence;
+using pcor::test::values_of;
 using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -50,11 +52,8 @@ class FlightTest : public testing::Test {
     return error;
   }
 
-  std::vector<double> read(const std::string& name, const UnitConversion& conversion = {}) const {
-    const Flight flight(path());
-    std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
-    flight.read(name, {0, flight.records()}, conversion, values.data());
-    return values;
+  std::vector<double> read(const std::string& name, const std::string& unit = "") const {
+    return values_of(Flight(path()), name, unit);
   }
 
   std::vector<double> times() const {
@@ -62,6 +61,15 @@ class FlightTest : public testing::Test {
     std::vector<double> values(flight.records());
     flight.read_time_stamps({0, flight.records()}, values.data());
     return values;
+  }
+
+  template <class Fill>
+  void make(const std::vector<double>& seconds, const Fill& fill) const {
+    pcor::test::make_flight(path(), seconds, fill);
+  }
+  template <class Fill>
+  void make_classic(const std::vector<double>& seconds, const Fill& fill) const {
+    pcor::test::make_flight(path(), seconds, fill, 0);
   }
 
   void make_with_times(const std::vector<double>& seconds, int type = NC_INT) const {
@@ -154,9 +162,7 @@ TEST_F(FlightTest, DamagedHeaderUsesLittleTimeAndMemory) {
       try {
         const Flight flight(path());
         for (const std::string& name : flight.variables()) {
-          if (!flight.variable(name).is_series) continue;
-          std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
-          flight.read(name, {0, flight.records()}, {}, values.data());
+          if (flight.variable(name).is_series) values_of(flight, name);
         }
       } catch (const Error&) {
         ++refused;
@@ -378,12 +384,10 @@ TEST_F(FlightTest, PackedTimesAreUnpackedBeforeTheirChecks) {
 }
 
 TEST_F(FlightTest, RefusesDuplicateNames) {
-  {
-    NetcdfMaker maker(path(), 0);
-    maker.time({100, 101});
+  make_classic({100, 101}, [&](NetcdfMaker& maker) {
     maker.series("PSFD", "hPa", {850, 851});
     maker.series("PSFX", "hPa", {1, 2});
-  }
+  });
   std::ostringstream text;
   text << std::ifstream(path(), std::ios::binary).rdbuf();
   std::string bytes = text.str();
@@ -476,11 +480,9 @@ TEST_F(FlightTest, SamplesLieInTheMiddleOfTheirIntervals) {
 // Variables
 
 TEST_F(FlightTest, MissingVariableSuggestsSimilarNames) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100});
+  make({100}, [&](NetcdfMaker& maker) {
     for (const char* name : {"TASX", "QCR", "QCFR", "QCX", "PSFD"}) maker.series(name, "hPa", {1});
-  }
+  });
   const Flight flight(path());
   EXPECT_THAT(error_of([&] { flight.variable("QCF"); }),
               IsError(Error::Code::variable, path().string(), "QCF", "QCFR, QCR, QCX"));
@@ -489,9 +491,7 @@ TEST_F(FlightTest, MissingVariableSuggestsSimilarNames) {
 }
 
 TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100});
+  make({100}, [&](NetcdfMaker& maker) {
     maker.series("QCFR", "mbar", {1});
     maker.series("QCR", "hPa", {1});
     maker.series("QCX", "hPa", {1});
@@ -501,7 +501,7 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
     maker.series("COUNTS", "cnts", {1});
     for (const char* name : {"TTRR", "TTRL", "TTWH"})
       maker.text(maker.series(name, "C", {1}), "long_name", "Total Temperature");
-  }
+  });
   const Flight flight(path());
   const auto refusal_of = [&](const char* name, const char* unit, const char* role) {
     return error_of([&] { flight.conversion(name, unit, role); });
@@ -521,25 +521,21 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
 }
 
 TEST_F(FlightTest, AtMostSixMatchingVariablesAreListed) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100});
+  make({100}, [&](NetcdfMaker& maker) {
     for (int i = 1; i < 10; ++i) maker.series("ABCD" + std::to_string(i), "degC", {1});
-  }
+  });
   const Flight flight(path());
   EXPECT_THAT(error_of([&] { flight.conversion("ZZ", "K", "ambient_temperature"); }),
               IsError(Error::Code::variable, "ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3"));
 }
 
 TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100});
+  make({100}, [&](NetcdfMaker& maker) {
     maker.series("PSFD", "mbar", {850});
     maker.series("HEAT", "K", {1});
     maker.series("ODD", "furlong-ish", {1});
     maker.series("BARE", "", {1});
-  }
+  });
   const Flight flight(path());
   const auto stated = [&](const char* name, const char* unit) {
     return flight.conversion(name, "hPa", "static_pressure", unit)(1);
@@ -559,14 +555,12 @@ TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
 }
 
 TEST_F(FlightTest, TrailingNulOfAttributesIsRemoved) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100});
+  make({100}, [&](NetcdfMaker& maker) {
     const int number = maker.series("PSFD", std::string("mbar\0", 5), {850});
     maker.text(number, "long_name", std::string("Static\0\0", 8));
     maker.text(NC_GLOBAL, "Aircraft", std::string("N130AR\0", 7));
     maker.text(NC_GLOBAL, "project", "GOTEX");
-  }
+  });
   const Flight flight(path());
   EXPECT_EQ(flight.variable("PSFD").units, "mbar");
   EXPECT_EQ(flight.variable("PSFD").long_name, "Static");
@@ -576,9 +570,7 @@ TEST_F(FlightTest, TrailingNulOfAttributesIsRemoved) {
 }
 
 TEST_F(FlightTest, EveryMissingValueMarkerBecomesNan) {
-  {
-    NetcdfMaker maker(path(), 0);
-    maker.time({100, 101, 102, 103, 104});
+  make_classic({100, 101, 102, 103, 104}, [&](NetcdfMaker& maker) {
     const auto put = [&](const char* name, const char* attribute, int type, double marker) {
       const int number = maker.variable(name, NC_FLOAT, {maker.time_dimension});
       if (attribute != nullptr) maker.numbers(number, attribute, type, {marker});
@@ -593,15 +585,13 @@ TEST_F(FlightTest, EveryMissingValueMarkerBecomesNan) {
     const int text = maker.variable("TEXT", NC_FLOAT, {maker.time_dimension});
     maker.text(text, "missing_value", std::string("-32767.f\0", 9));
     maker.values(text, {-32767, missing, missing, missing, 5});
-  }
+  });
   for (const char* name : {"FILL", "MISSING", "OLD", "DOUBLE", "BARE", "DEFAULT", "TEXT"})
     EXPECT_THAT(read(name), ElementsAre(IsNan(), IsNan(), IsNan(), IsNan(), 5)) << name;
 }
 
 TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     const auto put = [&](const char* name, int type, double fill) {
       const int number = maker.variable(name, type, {maker.time_dimension});
       maker.numbers(number, "scale_factor", NC_DOUBLE, {0.5});
@@ -613,7 +603,7 @@ TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
     put("UINT", NC_UINT, NC_FILL_UINT);
     put("INT64", NC_INT64, static_cast<double>(NC_FILL_INT64));
     put("UINT64", NC_UINT64, 0);  // its fill value is not a double
-  }
+  });
   {
     int id = 0, number = 0;
     nc_open(path().c_str(), NC_WRITE, &id);
@@ -628,9 +618,7 @@ TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
 }
 
 TEST_F(FlightTest, UnsignedAttributeAppliesToSignedIntegers) {
-  {
-    NetcdfMaker maker(path(), 0);
-    maker.time({100, 101, 102, 103});
+  make_classic({100, 101, 102, 103}, [&](NetcdfMaker& maker) {
     const auto put = [&](const char* name, int type, const std::vector<double>& stored) {
       const int number = maker.variable(name, type, {maker.time_dimension});
       maker.text(number, "_Unsigned", type == NC_BYTE ? "True" : "true");
@@ -643,16 +631,14 @@ TEST_F(FlightTest, UnsignedAttributeAppliesToSignedIntegers) {
     put("BYTE", NC_BYTE, {100, -128, -1, -2});
     put("SHORT", NC_SHORT, {100, -32768, -1, -2});
     put("INT", NC_INT, {100, -4, -1, -2});
-  }
+  });
   EXPECT_THAT(read("BYTE"), ElementsAre(501, DoubleEq(501.28), IsNan(), IsNan()));
   EXPECT_THAT(read("SHORT"), ElementsAre(501, DoubleEq(827.68), IsNan(), IsNan()));
   EXPECT_THAT(read("INT"), ElementsAre(501, DoubleEq(500 + 0.01 * 4294967292.), IsNan(), IsNan()));
 }
 
 TEST_F(FlightTest, InvalidValuesAreMissing) {
-  {
-    NetcdfMaker maker(path(), 0);
-    maker.time({100, 101, 102});
+  make_classic({100, 101, 102}, [&](NetcdfMaker& maker) {
     const int range = maker.series("RANGE", "hPa", {850, 99.9f, 5000});
     maker.numbers(range, "valid_range", NC_FLOAT, {100, 1100});
     const int minimum = maker.series("LEAST", "hPa", {850, 0.1f, 0.05f});
@@ -663,7 +649,7 @@ TEST_F(FlightTest, InvalidValuesAreMissing) {
     maker.numbers(packed, "scale_factor", NC_DOUBLE, {0.5});
     maker.numbers(packed, "valid_range", NC_SHORT, {10, 20});
     maker.values(packed, {10, 20, 21});
-  }
+  });
   EXPECT_THAT(read("RANGE"), ElementsAre(850, IsNan(), IsNan()));
   EXPECT_THAT(read("LEAST"), ElementsAre(850, DoubleEq(static_cast<double>(0.1f)), IsNan()))
       << "0.1 as a float is not below 0.1";
@@ -672,9 +658,7 @@ TEST_F(FlightTest, InvalidValuesAreMissing) {
 }
 
 TEST_F(FlightTest, TextRangeIsUsedOnlyIfTwoNumbers) {
-  {
-    NetcdfMaker maker(path(), 0);
-    maker.time({100, 101, 102});
+  make_classic({100, 101, 102}, [&](NetcdfMaker& maker) {
     const auto put = [&](const char* name, const char* range) {
       maker.text(maker.series(name, "degree", {-95, 40, 95}), "valid_range", range);
     };
@@ -684,7 +668,7 @@ TEST_F(FlightTest, TextRangeIsUsedOnlyIfTwoNumbers) {
     put("BRACKETS", "[-90 90]");
     put("WORDS", "all of them");
     put("ONE", "90");
-  }
+  });
   for (const char* const name : {"OF_R", "COMMA", "TO", "BRACKETS"}) {
     EXPECT_THAT(read(name), ElementsAre(IsNan(), 40, IsNan())) << name;
     EXPECT_EQ(Flight(path()).variable(name).ignored_range, "") << name;
@@ -697,18 +681,11 @@ TEST_F(FlightTest, TextRangeIsUsedOnlyIfTwoNumbers) {
 TEST_F(FlightTest, AircraftAttributeIsReadInEverySpelling) {
   for (const char* const name :
        {"platform", "Platform", "PLATFORM", "Aircraft", "aircraft", "tail_number", "platform_name"}) {
-    {
-      NetcdfMaker maker(path());
-      maker.time({100, 101});
-      maker.text(NC_GLOBAL, name, "N677F");
-    }
+    make({100, 101}, [&](NetcdfMaker& maker) { maker.text(NC_GLOBAL, name, "N677F"); });
     EXPECT_EQ(Flight(path()).aircraft(), "N677F") << name;
   }
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
-    maker.text(NC_GLOBAL, "source", "NSF/NCAR GV (N677F), nimbus");
-  }
+  make({100, 101},
+       [&](NetcdfMaker& maker) { maker.text(NC_GLOBAL, "source", "NSF/NCAR GV (N677F), nimbus"); });
   EXPECT_EQ(Flight(path()).aircraft(), "N677F");
 }
 
@@ -753,23 +730,19 @@ TEST_F(FlightTest, TimeErrorStatesTheDateIfKnown) {
 }
 
 TEST_F(FlightTest, ImplausibleValuesAreMissing) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101, 102, 103});
+  make({100, 101, 102, 103}, [&](NetcdfMaker& maker) {
     const int number = maker.variable("PSFD", NC_DOUBLE, {maker.time_dimension});
     maker.values(number, {850, 1e30, -1e300, infinity});
     const int packed = maker.variable("PACKED", NC_DOUBLE, {maker.time_dimension});
     maker.numbers(packed, "scale_factor", NC_DOUBLE, {1e300});
     maker.values(packed, {0, 1e10, 1e20, 1});
-  }
+  });
   EXPECT_THAT(read("PSFD"), ElementsAre(850, IsNan(), IsNan(), IsNan()));
   EXPECT_THAT(read("PACKED"), ElementsAre(0, IsNan(), IsNan(), 1e300));
 }
 
 TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     const auto put = [&](const char* name) {
       const int number = maker.variable(name, NC_SHORT, {maker.time_dimension});
       maker.values(number, {10, 11});
@@ -785,7 +758,7 @@ TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
     maker.numbers(packed, "scale_factor", NC_DOUBLE, {0.5});
     maker.numbers(packed, "valid_max", NC_DOUBLE, {20});
     maker.text(put("DIGITS"), "scale_factor", "0.5");
-  }
+  });
   const auto refusal_of = [this](const char* name) { return error_of([&] { read(name); }); };
   EXPECT_THAT(refusal_of("SCALE"),
               IsError(Error::Code::variable, path().string(), "\"text\"", "ncatted -a scale_factor,SCALE"));
@@ -799,11 +772,9 @@ TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
 }
 
 TEST_F(FlightTest, ImpossibleValuesAreCountedAndExcluded) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     maker.series("PSFD", "hPa", {800, 802, 9999, 806, -9999, -32767}, 3);
-  }
+  });
   const Flight flight(path());
   const UnitConversion possible = UnitConversion(0.1, 0).within(1, 120);
   std::vector<double> values(6);
@@ -815,9 +786,7 @@ TEST_F(FlightTest, ImpossibleValuesAreCountedAndExcluded) {
 }
 
 TEST_F(FlightTest, FlaggedUnusableValuesAreMissing) {
-  {
-    NetcdfMaker file(path());
-    file.time({0, 1, 2, 3});
+  make({0, 1, 2, 3}, [&](NetcdfMaker& file) {
     const auto series = [&](const std::string& name, int type, const std::vector<double>& values) {
       const int variable = file.variable(name, type, {file.time_dimension});
       file.values(variable, values);
@@ -841,7 +810,7 @@ TEST_F(FlightTest, FlaggedUnusableValuesAreMissing) {
     const int harmless = series("HARMLESS_FLAG", NC_BYTE, {1, 1, 1, 1});
     file.numbers(harmless, "flag_values", NC_BYTE, {1});
     file.text(harmless, "flag_meanings", "badger_on_board");
-  }
+  });
   EXPECT_THAT(read("VALUES"), ElementsAre(1, 2, IsNan(), 4));
   EXPECT_THAT(read("MASKS"), ElementsAre(1, IsNan(), IsNan(), IsNan()));
   EXPECT_THAT(read("NAMED"), ElementsAre(1, IsNan(), 3, IsNan()));
@@ -852,9 +821,7 @@ TEST_F(FlightTest, FlaggedUnusableValuesAreMissing) {
 }
 
 TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
-  {
-    NetcdfMaker file(path());
-    file.time({0, 1, 2, 3});
+  make({0, 1, 2, 3}, [&](NetcdfMaker& file) {
     const int fast = file.dimension("sps2", 2);
     const auto flagged = [&](const std::string& name, int type, const std::vector<double>& flags,
                              const std::vector<double>& masks) {
@@ -877,7 +844,7 @@ TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
     file.values(of_records, {0, 1, 0, 1});
     file.numbers(of_records, "flag_values", NC_INT, {0, 1});
     file.text(of_records, "flag_meanings", "good bad");
-  }
+  });
   EXPECT_THAT(read("UNSIGNED"), ElementsAre(1, IsNan(), IsNan(), 4));
   EXPECT_THAT(read("MARKED"), ElementsAre(1, IsNan(), IsNan(), 4));
   EXPECT_THAT(read("FILLED"), ElementsAre(1, 2, IsNan(), IsNan())) << "no flag is stored where the fill is";
@@ -889,27 +856,23 @@ TEST_F(FlightTest, FlagsOfAnyTypeAreInterpreted) {
 }
 
 TEST_F(FlightTest, RequiredVariableWithoutValuesIsAnError) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     maker.series("PSFD", "hPa", {-32767, -32767});
     maker.series("QCF", "hPa", {-32767, 3});
-  }
+  });
   const Flight flight(path());
   EXPECT_THAT(error_of([&] { flight.require_values("PSFD"); }), IsError(Error::Code::variable, "PSFD", "2"));
   EXPECT_NO_THROW(flight.require_values("QCF"));
 }
 
 TEST_F(FlightTest, UnitsAreConvertedByTheUnitsAttribute) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     maker.series("ATX", std::string("C\0", 2), {10, -32767});
     maker.series("PSF", "", {850, 851});
     maker.series("ODD", "furlong-ish", {1, 2});
-  }
+  });
   const Flight flight(path());
-  EXPECT_THAT(read("ATX", flight.conversion("ATX", "K")), ElementsAre(DoubleEq(283.15), IsNan()));
+  EXPECT_THAT(read("ATX", "K"), ElementsAre(DoubleEq(283.15), IsNan()));
   EXPECT_THAT(error_of([&] { flight.conversion("PSF", "hPa", "static_pressure"); }),
               IsError(Error::Code::unit, "PSF", "unit.static_pressure = \"hPa\"", "[units]"));
   EXPECT_THAT(error_of([&] { flight.conversion("ODD", "hPa", "static_pressure"); }),
@@ -921,27 +884,23 @@ TEST_F(FlightTest, UnitsAreConvertedByTheUnitsAttribute) {
 }
 
 TEST_F(FlightTest, PackedIntegersAreUnpacked) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     const int number = maker.variable("PACKED", NC_SHORT, {maker.time_dimension});
     maker.numbers(number, "scale_factor", NC_DOUBLE, {0.5});
     maker.numbers(number, "add_offset", NC_DOUBLE, {100});
     maker.numbers(number, "_FillValue", NC_SHORT, {-1});
     maker.values(number, {10, -1});
-  }
+  });
   EXPECT_THAT(read("PACKED"), ElementsAre(105, IsNan()));
 }
 
 TEST_F(FlightTest, OtherVariablesAreListedAndRefused) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100});
+  make({100}, [&](NetcdfMaker& maker) {
     const int sps1 = maker.dimension("sps1", 1), bins = maker.dimension("Vector64", 64);
     maker.variable("CDP", NC_FLOAT, {maker.time_dimension, sps1, bins});
     maker.variable("WORDS", NC_CHAR, {maker.time_dimension});
     maker.variable("ONE", NC_FLOAT, {maker.time_dimension, sps1});
-  }
+  });
   const Flight flight(path());
   EXPECT_THAT(flight.variables(), ElementsAre("Time", "CDP", "WORDS", "ONE"));
   EXPECT_FALSE(flight.variable("CDP").is_series);
@@ -984,12 +943,10 @@ TEST_F(FlightTest, ABlockBeyondTheEndIsRefused) {
 // Rates
 
 TEST_F(FlightTest, VariablesOfDifferentRatesAreRead) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101});
+  make({100, 101}, [&](NetcdfMaker& maker) {
     maker.series("SLOW", "hPa", {1, 2});
     maker.series("FAST", "hPa", {1, 2, -32767, 6, -32767, -32767, -32767, -32767}, 4);
-  }
+  });
   const Flight flight(path());
   EXPECT_EQ(flight.variable("SLOW").rate, 1);
   EXPECT_EQ(flight.variable("FAST").rate, 4);
@@ -1008,15 +965,13 @@ TEST_F(FlightTest, VariablesOfDifferentRatesAreRead) {
 }
 
 TEST_F(FlightTest, AnglesAreAveragedOnTheCircle) {
-  {
-    NetcdfMaker maker(path());
-    maker.time({100, 101, 102});
+  make({100, 101, 102}, [&](NetcdfMaker& maker) {
     const std::vector<double> degrees{350, 10, 340, 360, 90, 270};
     const int heading = maker.series("THDG", "deg", degrees, 2);
     maker.numbers(heading, "modulus_range", NC_FLOAT, {0, 360});
     const int longitude = maker.series("LON", "deg", {179, -179, 10, 20, -179, 177}, 2);
     maker.numbers(longitude, "modulus_range", NC_FLOAT, {-180, 180});
-  }
+  });
   const Flight flight(path());
   double values[3];
   flight.read_at_rate(1, "THDG", {0, 3}, {}, values);
@@ -1030,11 +985,8 @@ TEST_F(FlightTest, AnglesAreAveragedOnTheCircle) {
 }
 
 TEST_F(FlightTest, BlocksOfAnySizeGiveTheSame) {
-  {
-    NetcdfMaker maker(path(), 0);
-    maker.time(sequence(0, 100));
-    maker.series("PSFD", "hPa", sequence(500, 500), 5);
-  }
+  make_classic(sequence(0, 100),
+               [&](NetcdfMaker& maker) { maker.series("PSFD", "hPa", sequence(500, 500), 5); });
   const Flight flight(path());
   for (const std::size_t size : {1U, 7U, 100U, 1000U}) {
     std::vector<double> all(500);
@@ -1094,12 +1046,8 @@ TEST(RealFlight, FlightOfJuly2004IsRead) {
   // Total pressure of the two systems: slope 0.99989, offset -0.05 hPa, rms 0.088 in flight.
   const std::size_t records = flight.records();
   std::vector<std::vector<double>> values;
-  for (const char* name : {"PSFD", "QCF", "PSFRD", "QCFR"}) {
-    values.emplace_back(records);
-    flight.read(name, {0, records}, flight.conversion(name, "hPa"), values.back().data());
-  }
-  std::vector<double> airspeed(records);
-  flight.read("TASX", {0, records}, flight.conversion("TASX", "m/s"), airspeed.data());
+  for (const char* name : {"PSFD", "QCF", "PSFRD", "QCFR"}) values.push_back(values_of(flight, name, "hPa"));
+  const std::vector<double> airspeed = values_of(flight, "TASX", "m/s");
   double squares = 0;
   int samples = 0;
   for (std::size_t i = 0; i < records; ++i) {

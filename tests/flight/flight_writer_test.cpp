@@ -26,6 +26,7 @@ using pcor::OutputVariable;
 using pcor::RecordBlock;
 using pcor::test::error_of;
 using pcor::test::IsError;
+using pcor::test::make_flight;
 using pcor::test::NetcdfMaker;
 using pcor::test::sequence;
 using testing::ElementsAre;
@@ -58,77 +59,46 @@ std::string contents(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// Description of a written file by the netCDF library itself.
+/// Description of a written file by netcdf-cxx4. The variable "" has the global attributes.
 class Written {
  public:
-  explicit Written(const std::filesystem::path& path) {
-    EXPECT_EQ(nc_open(path.c_str(), NC_NOWRITE, &id), NC_NOERR) << path;
-  }
-  Written(const Written&) = delete;
-  Written& operator=(const Written&) = delete;
-  ~Written() { nc_close(id); }
+  explicit Written(const std::filesystem::path& path) : file_(path, netCDF::NcFile::read) {}
 
-  int variable(const std::string& name) const {
-    int number = -2;
-    EXPECT_EQ(nc_inq_varid(id, name.c_str(), &number), NC_NOERR) << name;
-    return number;
+  netCDF::NcVar variable(const std::string& name) const {
+    return name.empty() ? netCDF::NcVar(file_, NC_GLOBAL) : file_.getVar(name);
   }
-  bool has_variable(const std::string& name) const {
-    int number = 0;
-    return nc_inq_varid(id, name.c_str(), &number) == NC_NOERR;
-  }
-  int type(const std::string& name) const {
-    nc_type type = NC_NAT;
-    nc_inq_vartype(id, variable(name), &type);
-    return type;
-  }
+  int type(const std::string& name) const { return variable(name).getType().getId(); }
   int attribute_type(const std::string& name, const std::string& attribute) const {
-    nc_type type = NC_NAT;
-    nc_inq_atttype(id, variable(name), attribute.c_str(), &type);
-    return type;
+    return variable(name).getAtt(attribute).getType().getId();
   }
   std::string text(const std::string& name, const std::string& attribute) const {
-    const int number = name.empty() ? NC_GLOBAL : variable(name);
-    std::size_t length = 0;
-    if (nc_inq_attlen(id, number, attribute.c_str(), &length) != NC_NOERR) return "absent";
-    std::string value(length, '?');
-    EXPECT_EQ(nc_get_att_text(id, number, attribute.c_str(), value.data()), NC_NOERR) << attribute;
+    std::string value;
+    variable(name).getAtt(attribute).getValues(value);
     return value;
   }
   std::vector<double> numbers(const std::string& name, const std::string& attribute) const {
-    const int number = name.empty() ? NC_GLOBAL : variable(name);
-    std::size_t length = 0;
-    if (nc_inq_attlen(id, number, attribute.c_str(), &length) != NC_NOERR) return {};
-    std::vector<double> values(length);
-    EXPECT_EQ(nc_get_att_double(id, number, attribute.c_str(), values.data()), NC_NOERR) << attribute;
+    const auto attributes = variable(name).getAtts();
+    const auto found = attributes.find(attribute);
+    if (found == attributes.end()) return {};
+    std::vector<double> values(found->second.getAttLength());
+    found->second.getValues(values.data());
     return values;
   }
   std::vector<double> values(const std::string& name) const {
-    int rank = 0, dimensions[NC_MAX_VAR_DIMS];
-    nc_inq_var(id, variable(name), nullptr, nullptr, &rank, dimensions, nullptr);
     std::size_t total = 1;
-    for (int i = 0; i < rank; ++i) {
-      std::size_t length = 0;
-      nc_inq_dimlen(id, dimensions[i], &length);
-      total *= length;
-    }
+    for (const netCDF::NcDim& each : variable(name).getDims()) total *= each.getSize();
     std::vector<double> result(total);
-    EXPECT_EQ(nc_get_var_double(id, variable(name), result.data()), NC_NOERR) << name;
+    variable(name).getVar(result.data());
     return result;
   }
   std::vector<std::string> shape(const std::string& name) const {
-    int rank = 0, dimensions[NC_MAX_VAR_DIMS];
-    nc_inq_var(id, variable(name), nullptr, nullptr, &rank, dimensions, nullptr);
     std::vector<std::string> names;
-    for (int i = 0; i < rank; ++i) {
-      char dimension[NC_MAX_NAME + 1];
-      nc_inq_dimname(id, dimensions[i], dimension);
-      names.emplace_back(dimension);
-    }
+    for (const netCDF::NcDim& each : variable(name).getDims()) names.push_back(each.getName());
     return names;
   }
 
-  int id = 0;
+ private:
+  netCDF::NcFile file_;
 };
 
 class FlightWriterTest : public testing::Test {
@@ -217,10 +187,7 @@ TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
   EXPECT_EQ(file.text("Time", "axis"), "T");
   EXPECT_EQ(file.text("Time", "calendar"), "standard");
   EXPECT_EQ(file.text("Time", "strptime_format"), "seconds since %F %T %z");
-  int unlimited = -1, time = -2;
-  nc_inq_unlimdim(file.id, &unlimited);
-  nc_inq_dimid(file.id, "Time", &time);
-  EXPECT_EQ(unlimited, time);
+  EXPECT_TRUE(file.variable("Time").getDim(0).isUnlimited());
 
   EXPECT_EQ(file.type("PSXC"), NC_FLOAT);
   EXPECT_THAT(file.shape("PSXC"), ElementsAre("Time"));
@@ -338,13 +305,11 @@ TEST_F(FlightWriterTest, CopiesAreIdenticalForEveryFileKind) {
 }
 
 TEST_F(FlightWriterTest, StringAttributesAreCopied) {
-  {
-    NetcdfMaker maker(input);
-    maker.time({100});
+  make_flight(input, {100}, [](NetcdfMaker& maker) {
     const int number = maker.series("PSFD", "hPa", {850});
     const char* text[] = {"Static"};
     nc_put_att_string(maker.id(), number, "long_name", 1, text);
-  }
+  });
   const Flight flight(input);
   FlightWriter writer(output, flight, {});
   writer.copy("PSFD");
@@ -398,9 +363,7 @@ TEST_F(FlightWriterTest, IncompleteVariableIsAnError) {
 }
 
 TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
-  {
-    NetcdfMaker maker(input);
-    maker.time({100, 101});
+  make_flight(input, {100, 101}, [](NetcdfMaker& maker) {
     maker.series("PSFD", "hPa", {850, 851});
     maker.series("FAST", "hPa", sequence(1, 8), 4);
     const int bins = maker.dimension("Vector2", 2);
@@ -412,7 +375,7 @@ TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
     maker.variable("PAIRS", pair, {maker.time_dimension});
     const int values[] = {1, 2};
     ASSERT_EQ(nc_put_att(maker.id(), NC_GLOBAL, "pair", pair, 1, values), NC_NOERR);
-  }
+  });
   const Flight flight(input);
   FlightWriter writer(output, flight, {});
   EXPECT_TRUE(writer.can_copy("PSFD"));
@@ -427,14 +390,12 @@ TEST_F(FlightWriterTest, UncopyableVariablesAreReportedInAdvance) {
 
 // A division by the size of a record ended the program.
 TEST_F(FlightWriterTest, VariableWithASecondUnlimitedDimensionOfLengthZeroIsCopied) {
-  {
-    NetcdfMaker maker(input);
-    maker.time({100, 101});
+  make_flight(input, {100, 101}, [](NetcdfMaker& maker) {
     maker.series("PSFD", "hPa", {850, 851});
     int bins = 0;
     ASSERT_EQ(nc_def_dim(maker.id(), "bins", NC_UNLIMITED, &bins), NC_NOERR);
     maker.variable("EMPTY", NC_FLOAT, {maker.time_dimension, bins});
-  }
+  });
   const Flight flight(input);
   FlightWriter writer(output, flight, {});
   ASSERT_TRUE(writer.can_copy("EMPTY"));

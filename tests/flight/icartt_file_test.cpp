@@ -11,10 +11,12 @@
 #include "support/error_of.hpp"
 #include "support/says.hpp"
 #include "support/temporary_directory.hpp"
+#include "support/values_of.hpp"
 
 namespace pcor::internal {
 namespace {
 
+using test::values_of;
 using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -37,12 +39,6 @@ class Icartt : public testing::Test {
   test::TemporaryDirectory folder_;
   std::filesystem::path path_ = folder_.path() / "flight.ict";
 };
-
-std::vector<double> values_of(const Flight& flight, const std::string& name) {
-  std::vector<double> values(flight.records());
-  flight.read(name, {0, flight.records()}, UnitConversion(), values.data());
-  return values;
-}
 
 const std::string values = "47076, 850, 300, 0.3\n47077,-9999,-8888, 0.31\r\n47078, 852.5, 310, -7777\n";
 

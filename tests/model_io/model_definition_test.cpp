@@ -96,8 +96,10 @@ static_pressure = "PSFD"
 dynamic_pressure = "QCF"
 )";
 
+ModelDefinition parsed(std::string_view text) { return parse_model(text, "m.toml"); }
+
 std::optional<Error> parse_error_of(std::string_view text) {
-  return error_of([&] { parse_model(text, "m.toml"); });
+  return error_of([&] { parsed(text); });
 }
 
 std::optional<Error> write_error_of(const ModelDefinition& file) {
@@ -445,7 +447,7 @@ TEST(ModelDefinition, VariablesMayComeFromTheAircraftRoles) {
 }
 
 TEST(ModelDefinition, ReadsThePublishedExample) {
-  const ModelDefinition file = parse_model(published_example, "m.toml");
+  const ModelDefinition file = parsed(published_example);
   EXPECT_EQ(file.model.name, "C-130 PSFD/QCF");
   EXPECT_EQ(file.model.aircraft, "C-130 N130AR");
   EXPECT_EQ(file.variables.size(), 14u);
@@ -468,7 +470,7 @@ TEST(ModelDefinition, ReadsThePublishedExample) {
 }
 
 TEST(ModelDefinition, ReadsThePublishedFormulaEffect) {
-  const ModelDefinition file = parse_model(published_example + published_formula, "m.toml");
+  const ModelDefinition file = parsed(published_example + published_formula);
   ASSERT_EQ(file.model.effects.size(), 3u);
   const ModelEffect& effect = file.model.effects[2];
   EXPECT_TRUE(effect.is_formula());
@@ -482,7 +484,7 @@ TEST(ModelDefinition, ReadsThePublishedFormulaEffect) {
 }
 
 TEST(ModelDefinition, IsWrittenInTheLayoutOfTheExample) {
-  EXPECT_EQ(write_model(parse_model(minimum + published_formula, "m.toml")), R"(format = "pcor-model/1"
+  EXPECT_EQ(write_model(parsed(minimum + published_formula)), R"(format = "pcor-model/1"
 
 [variables]
 static_pressure = "PSFD"
@@ -499,7 +501,7 @@ source = "engine run-up, 2011-11-02"
 }
 
 TEST(ModelDefinition, ReadsEveryTable) {
-  const ModelDefinition file = parse_model(minimum + R"(dew_point = "DPXC"
+  const ModelDefinition file = parsed(minimum + R"(dew_point = "DPXC"
 flaps = "FLAPS"
 [units]
 static_pressure = "mbar"
@@ -542,8 +544,7 @@ zebra = "first"
 flights = ["rf01.nc", "rf02.nc"]
 date = 2014-01-02T03:04:05Z
 apple = { used = 12, share = 0.5, clean = true }
-)",
-                                           "m.toml");
+)");
   EXPECT_EQ(file.units.at(Quantity::static_pressure), "mbar");
   EXPECT_EQ(file.units.at(Quantity::dew_point), "C");
   EXPECT_EQ(file.units.at(Quantity::flaps), "percent");
@@ -577,12 +578,12 @@ apple = { used = 12, share = 0.5, clean = true }
   EXPECT_EQ(std::get<std::int64_t>(std::get<Provenance>(file.provenance[3].second)[0].second), 12);
 
   const std::string written = write_model(file);
-  EXPECT_EQ(Description::of(parse_model(written, "m.toml")), Description::of(file)) << written;
+  EXPECT_EQ(Description::of(parsed(written)), Description::of(file)) << written;
 }
 
 // Uncertainties of fitted parameters, of parameters that are only considered, and of samples.
 TEST(ModelDefinition, ReadsAllUncertainties) {
-  const ModelDefinition file = parse_model(minimum + R"([[effect]]
+  const ModelDefinition file = parsed(minimum + R"([[effect]]
 id = "static-constant"
 parameters = { a0 = 0.004 }
 stderr = { a0 = 1e-4 }
@@ -599,8 +600,7 @@ matrix = [[4e-6, -1e-7], [-1e-7, 1e-8]]
 [uncertainty]
 dynamic_pressure = 0.03
 static_defect_ratio = 0.00045
-)",
-                                           "m.toml");
+)");
   const ModelUncertainty uncertainty = uncertainty_of(file);
   EXPECT_THAT(uncertainty.covariance, ElementsAre(1e-8, 0.0, -1e-7,                   //
                                                   0.0, testing::DoubleEq(0.01), 0.0,  //
@@ -608,26 +608,26 @@ static_defect_ratio = 0.00045
   EXPECT_EQ(uncertainty.random[index(Quantity::dynamic_pressure)], 0.03);
   EXPECT_EQ(uncertainty.random[index(Quantity::static_pressure)], 0.0);
   EXPECT_EQ(uncertainty.static_defect_ratio, 0.00045);
-  EXPECT_FALSE(uncertainty_of(parse_model(minimum, "m.toml")).has_systematic());
+  EXPECT_FALSE(uncertainty_of(parsed(minimum)).has_systematic());
 }
 
 TEST(ModelDefinition, UncertaintyIsNamedAfterItsResult) {
-  const ModelDefinition file = parse_model(
-      minimum + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n", "m.toml");
+  const ModelDefinition file =
+      parsed(minimum + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n");
   EXPECT_EQ(file.output_name("PSXC_uncertainty"), "PSFDC_uncertainty");
   EXPECT_EQ(file.output_name("QCXC_uncertainty"), "U");
   EXPECT_EQ(file.output_name("ATX_uncertainty"), "ATX_uncertainty");
 }
 
 TEST(ModelDefinition, DefaultBoundsAreThoseOfTheCatalogue) {
-  const ModelDefinition file = parse_model(minimum + "[[effect]]\nid = \"recovery-factor\"\n", "m.toml");
+  const ModelDefinition file = parsed(minimum + "[[effect]]\nid = \"recovery-factor\"\n");
   EXPECT_EQ(file.bounds(0, 0).lower, -0.2);
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
 
 TEST(ModelDefinition, ThirdLamsApproachReadsBothTemperatures) {
   const std::string both = "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n";
-  const ModelDefinition file = parse_model(minimum + both + "[lams]\napproach = 3\n", "m.toml");
+  const ModelDefinition file = parsed(minimum + both + "[lams]\napproach = 3\n");
   EXPECT_EQ(file.variables.count(Quantity::recovery_temperature), 1u);
   EXPECT_EQ(file.variables.count(Quantity::ambient_temperature), 1u);
 }
@@ -637,15 +637,15 @@ TEST(ModelDefinition, WindowsLineEndsAreAccepted) {
   for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i + 2)) {
     text.insert(i, "\r");
   }
-  EXPECT_EQ(Description::of(parse_model("\xef\xbb\xbf" + text, "m.toml")),
-            Description::of(parse_model(published_example + published_formula, "m.toml")));
+  EXPECT_EQ(Description::of(parsed("\xef\xbb\xbf" + text)),
+            Description::of(parsed(published_example + published_formula)));
 }
 
 TEST(ModelDefinition, WriteAndReadRestoreEveryBit) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const ModelDefinition file = ModelGenerator(seed).model();
     const std::string text = write_model(file);
-    const ModelDefinition restored = parse_model(text, "m.toml");
+    const ModelDefinition restored = parsed(text);
     ASSERT_EQ(Description::of(restored), Description::of(file)) << "seed " << seed << "\n" << text;
     ASSERT_EQ(write_model(restored), text) << "seed " << seed;
   }
@@ -933,25 +933,24 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 TEST(ModelDefinition, UnreadableDefinitionCannotBeWritten) {
-  ModelDefinition file = parse_model(published_example, "m.toml");
+  ModelDefinition file = parsed(published_example);
   file.model.effects[0].parameters[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition, "static-constant.a0", "nan"));
-  file = parse_model(published_example, "m.toml");
+  file = parsed(published_example);
   file.model.effects[0].parameters.clear();
   EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition, "'static-constant'", "1", "0"));
   file.model.effects[0].id = "static-constnat";
   EXPECT_THAT(write_error_of(file), IsError(Error::Code::usage, "'static-constnat'", "static-constant"));
-  file = parse_model(published_example, "m.toml");
+  file = parsed(published_example);
   file.variables.erase(Quantity::static_pressure);
   EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition, "static_pressure"));
-  file = parse_model(published_example, "m.toml");
+  file = parsed(published_example);
   file.model.name = "latin \xe9";
   EXPECT_THAT(write_error_of(file), IsError(Error::Code::definition));
 }
 
 TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
-  ModelDefinition file =
-      parse_model(minimum + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n", "m.toml");
+  ModelDefinition file = parsed(minimum + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n");
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = \"rosemount-heated\""));
   file.model.recovery.coefficients[0] = 0.96;
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = 0.96\n"));
@@ -991,7 +990,7 @@ TEST_F(ModelFileOnDisk, InputOrLinkToItIsNotOverwritten) {
 }
 
 TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
-  ModelDefinition file = parse_model(published_example, "m.toml");
+  ModelDefinition file = parsed(published_example);
   file.model.effects[0].parameters[0] = std::numeric_limits<double>::infinity();
   const fs::path output = write("out.toml", "old");
   EXPECT_THROW(save_model(file, output, {}), Error);
@@ -1000,5 +999,5 @@ TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
 }
 
 TEST_F(ModelFileOnDisk, SavingToAMissingDirectoryFails) {
-  EXPECT_THROW(save_model(parse_model(minimum, "m.toml"), directory_ / "none" / "m.toml", {}), Error);
+  EXPECT_THROW(save_model(parsed(minimum), directory_ / "none" / "m.toml", {}), Error);
 }

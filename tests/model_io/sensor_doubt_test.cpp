@@ -6,6 +6,8 @@
 
 #include <pcor/base/error.hpp>
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 
@@ -26,14 +28,14 @@ id = "static-constant"
 )" + more;
 }
 
-std::vector<std::string> names_of(const std::vector<internal::SensorDoubt>& doubts) {
+std::vector<std::string> names_of(const std::vector<SensorDoubt>& doubts) {
   std::vector<std::string> names;
-  for (const internal::SensorDoubt& doubt : doubts) names.push_back(doubt.name());
+  for (const SensorDoubt& doubt : doubts) names.push_back(doubt.name());
   return names;
 }
 
-std::vector<internal::SensorDoubt> thermometer_of(const std::string& more) {
-  return internal::doubts_of(parse_model(model_text(more), "m.toml"), internal::thermometer_calibration);
+std::vector<SensorDoubt> thermometer_of(const std::string& more) {
+  return doubts_of(parse_model(model_text(more), "m.toml"), thermometer_calibration);
 }
 
 TEST(SensorDoubt, ModelPriorOverridesTheCatalogue) {
@@ -53,8 +55,7 @@ TEST(SensorDoubt, ModelPriorOverridesTheCatalogue) {
 
 TEST(SensorDoubt, ModelAndItsErrorStayUnchanged) {
   const ModelDefinition given = parse_model(model_text(""), "m.toml");
-  const ModelDefinition doubted =
-      internal::with_doubts(given, internal::doubts_of(given, internal::thermometer_calibration));
+  const ModelDefinition doubted = with_doubts(given, doubts_of(given, thermometer_calibration));
   ASSERT_EQ(doubted.model.effects.size(), 3U);
   EXPECT_THAT(doubted.model.effects[1].parameters, ElementsAre(0.0, 0.0));
   EXPECT_TRUE(doubted.fit(1, 0).fixed);
@@ -71,12 +72,27 @@ TEST(SensorDoubt, CovarianceRoundTripsAndFollowsItsEffect) {
   const ModelDefinition read = parse_model(write_model(file), "m.toml");
   EXPECT_EQ(read.covariance.parameters, file.covariance.parameters);
   EXPECT_EQ(read.covariance.matrix, file.covariance.matrix);
-  EXPECT_THAT(uncertainty_of(read).covariance, ElementsAre(1e-6));
-  const ModelDefinition doubted =
-      internal::with_doubts(read, internal::doubts_of(read, internal::thermometer_calibration));
+  EXPECT_THAT(stated_uncertainty(read).covariance, ElementsAre(1e-6));
+  const ModelDefinition doubted = with_doubts(read, doubts_of(read, thermometer_calibration));
   const ModelUncertainty uncertainty = uncertainty_of(doubted);
   EXPECT_DOUBLE_EQ(uncertainty.covariance[0 * 4 + 1], 1e-4);
   EXPECT_DOUBLE_EQ(uncertainty.covariance[1 * 4 + 1], 0.04);
+  EXPECT_EQ(uncertainty_of(read).covariance, uncertainty.covariance);
+}
+
+// Without it the temperature of a loop would have the small error of the pressures.
+TEST(SensorDoubt, StatedUncertaintyIncludesTheThermometer) {
+  const auto calibration_of = [](const std::string& text) {
+    std::vector<std::string> ids;
+    for (const ModelEffect& effect : uncertainty_of(parse_model(text, "m.toml")).calibration)
+      ids.push_back(effect.id);
+    return ids;
+  };
+  const std::string stated = model_text("stderr = { a0 = 1e-4 }\n");
+  EXPECT_THAT(calibration_of(stated), ElementsAre("temp-offset", "recovery-factor"));
+  EXPECT_THAT(calibration_of(stated + "[[effect]]\nid = \"temp-offset\"\n"), ElementsAre("recovery-factor"));
+  EXPECT_THAT(calibration_of(model_text("")), ElementsAre()) << "no uncertainty is stated";
+  EXPECT_TRUE(uncertainty_of(parse_model(stated, "m.toml")).random_part().calibration.empty());
 }
 
 }  // namespace

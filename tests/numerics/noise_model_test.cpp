@@ -1,9 +1,10 @@
 // Noise of binned residuals: whitening against the covariance of the process, written out.
 #include "numerics/noise_model.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -58,6 +59,13 @@ std::vector<double> autocovariance(const std::vector<double>& coefficients, std:
 double autocorrelation(const Eigen::VectorXd& series, Eigen::Index lag) {
   const Eigen::Index n = series.size() - lag;
   return series.head(n).dot(series.tail(n)) / series.squaredNorm();
+}
+
+std::vector<NoiseFlight> flights(std::size_t count) {
+  std::vector<NoiseFlight> all;
+  for (std::size_t f = 0; f < count; ++f)
+    all.push_back({86400.0 * static_cast<double>(f), f % 2 == 0 ? 900U : 2U});
+  return all;
 }
 
 }  // namespace
@@ -169,19 +177,50 @@ TEST(NoiseModel, LevelsOfAFlightFollowFromTheSharedModel) {
   std::vector<Eigen::MatrixXd> columns;
   for (const Eigen::VectorXd& each : residuals) columns.emplace_back(Eigen::VectorXd::Ones(each.size()));
   const NoiseModel noise = find_noise(bins, columns, residuals).model;
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    const auto levels = noise_levels(bins[f], residuals[f], noise);
-    EXPECT_EQ(level_of_bins(levels, bins[f]), noise.level[f]);
+  for (std::size_t f = 0; f < bins.size(); ++f)
+    EXPECT_EQ(noise_levels(bins[f], residuals[f], noise), noise.level[f]);
+  EXPECT_EQ(noise_levels(Binning(), Eigen::VectorXd(), noise).size(), 0);
+}
+
+TEST(NoiseFlights, FewFlightsAreAllUsed) {
+  EXPECT_THAT(flights_for_noise(flights(3)), ::testing::ElementsAre(0, 1, 2));
+  EXPECT_EQ(flights_for_noise(flights(16)).size(), 16U);
+}
+
+TEST(NoiseFlights, InformativeFlightsAreChosenFromMany) {
+  for (const std::size_t count : {17U, 34U, 200U}) {
+    const std::vector<NoiseFlight> all = flights(count);
+    const std::vector<std::size_t> chosen = flights_for_noise(all);
+    EXPECT_LE(chosen.size(), 16U);
+    EXPECT_GE(chosen.size(), 8U);
+    for (const std::size_t f : chosen) EXPECT_EQ(all[f].bins, 900U);
   }
-  // Samples excluded from a flight do not change the levels of the other samples.
-  const auto levels = noise_levels(bins[1], residuals[1], noise);
-  std::vector<double> part(900, 0.0);
-  std::fill(part.begin() + 100, part.begin() + 400, std::nan(""));
-  const Eigen::VectorXd of_part = level_of_bins(levels, bins_of(part));
-  EXPECT_EQ(of_part.head(100), noise.level[1].head(100));
-  EXPECT_EQ(of_part.tail(500), noise.level[1].tail(500));
-  // A flight without remaining samples has the common level.
-  const auto nothing = noise_levels(Binning(), Eigen::VectorXd(), noise);
-  ASSERT_EQ(nothing.size(), 1U);
-  EXPECT_NEAR(nothing.front().rms, noise.scale * noise.common_level, 1e-12);
+}
+
+TEST(NoiseFlights, FlightsWithoutBinsAreLeftOut) {
+  std::vector<NoiseFlight> all = flights(7);
+  for (const std::size_t f : {0U, 2U, 4U, 6U}) all[f].bins = 0;
+  EXPECT_THAT(flights_for_noise(all, 6), ::testing::ElementsAre(1, 3, 5));
+}
+
+TEST(NoiseFlights, FewLongFlightsArePreferredToManyShortOnes) {
+  std::vector<NoiseFlight> all = flights(12);
+  for (const std::size_t f : {0U, 2U, 6U, 8U}) all[f].bins = 2;
+  EXPECT_THAT(flights_for_noise(all, 6), ::testing::ElementsAre(4, 10));
+}
+
+TEST(NoiseFlights, ChoiceIsIndependentOfFlightOrder) {
+  std::vector<NoiseFlight> all = flights(50);
+  std::mt19937 chance(1);
+  std::vector<double> begins;
+  for (int order = 0; order < 5; ++order) {
+    std::vector<double> now;
+    for (const std::size_t f : flights_for_noise(all)) now.push_back(all[f].begin);
+    std::sort(now.begin(), now.end());
+    if (order > 0) {
+      EXPECT_EQ(now, begins);
+    }
+    begins = now;
+    std::shuffle(all.begin(), all.end(), chance);
+  }
 }

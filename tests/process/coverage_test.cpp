@@ -16,6 +16,7 @@
 #include <pcor/simulate/simulate.hpp>
 #include "support/many_seeds.hpp"
 #include "support/temporary_directory.hpp"
+#include "support/values_of.hpp"
 
 namespace pcor {
 namespace {
@@ -128,12 +129,6 @@ const std::array<Compared, 4> compared{{{"PSXC", "TRUE_PS", "hPa"},
                                         {"ATX", "TRUE_AT", "degC"},
                                         {"TASX", "TRUE_TAS", "m/s"}}};
 
-std::vector<double> read(const Flight& flight, const std::string& name, const std::string& unit) {
-  std::vector<double> values(flight.records());
-  flight.read(name, {0, flight.records()}, flight.conversion(name, unit), values.data());
-  return values;
-}
-
 struct Shares {
   std::size_t count = 0, within_one = 0, within_two = 0;
 };
@@ -162,10 +157,10 @@ TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
     process_flight(directory / "in.nc", file, directory / "out.nc");
     const Flight recorded(directory / "in.nc"), corrected(directory / "out.nc");
     for (std::size_t i = 0; i < compared.size(); ++i) {
-      const std::vector<double> values = read(corrected, compared[i].result, compared[i].unit);
-      const std::vector<double> stated = read(corrected, compared[i].result + "_uncertainty",
-                                              compared[i].unit == "degC" ? "K" : compared[i].unit);
-      const std::vector<double> truth = read(recorded, compared[i].truth, compared[i].unit);
+      const std::vector<double> values = test::values_of(corrected, compared[i].result, compared[i].unit);
+      const std::vector<double> stated = test::values_of(corrected, compared[i].result + "_uncertainty",
+                                                         compared[i].unit == "degC" ? "K" : compared[i].unit);
+      const std::vector<double> truth = test::values_of(recorded, compared[i].truth, compared[i].unit);
       for (const std::size_t sample : samples_of(summary)) {
         const double z = std::abs(values[sample] - truth[sample]) / stated[sample];
         ASSERT_FALSE(std::isnan(z)) << compared[i].result << " of flight " << seed;

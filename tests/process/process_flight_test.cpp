@@ -11,18 +11,13 @@
 
 #include <pcor/process/process.hpp>
 #include "support/temporary_directory.hpp"
+#include "support/values_of.hpp"
 
 namespace pcor {
 namespace {
 
-std::filesystem::path model_path(const std::string& name) {
-  return std::filesystem::path(PCOR_SOURCE_DIR) / "data/models" / name;
-}
-
-std::vector<double> read_all(const Flight& flight, const std::string& name, const std::string& unit) {
-  std::vector<double> values(flight.records());
-  flight.read(name, {0, flight.records()}, flight.conversion(name, unit), values.data());
-  return values;
+ModelDefinition published(const std::string& name) {
+  return read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data/models" / name);
 }
 
 class RealFlight : public testing::Test {
@@ -42,11 +37,12 @@ class RealFlight : public testing::Test {
 
   /// The greatest difference between a derived variable and nimbus's, in flight (TASX above 60 m/s).
   double worst(
-      const Flight& ours, const std::string& name, const Flight& nimbus, const std::string& theirs,
-      const std::string& unit, const std::function<double(double)>& of_ours = [](double x) { return x; }) {
-    const std::vector<double> derived = read_all(ours, name, unit == "1" ? "1" : unit);
-    const std::vector<double> reference = read_all(nimbus, theirs, unit);
-    const std::vector<double> airspeed = read_all(nimbus, "TASX", "m/s");
+      const Flight& ours, const std::string& name, const std::string& theirs, const std::string& unit,
+      const std::function<double(double)>& of_ours = [](double x) { return x; }) {
+    const Flight nimbus(path_);
+    const std::vector<double> derived = test::values_of(ours, name, unit);
+    const std::vector<double> reference = test::values_of(nimbus, theirs, unit);
+    const std::vector<double> airspeed = test::values_of(nimbus, "TASX", "m/s");
     double maximum = 0.0;
     std::size_t compared = 0;
     for (std::size_t i = 0; i < derived.size(); ++i) {
@@ -70,40 +66,36 @@ class RealFlight : public testing::Test {
 constexpr double pressure_tolerance = 2e-4;  // hPa
 
 TEST_F(RealFlight, RadomePairPressuresAgreeWithNimbus) {
-  const Flight nimbus(path_);
-  const Flight ours = process(read_model(model_path("c130-psfd-qcr-2003.toml")));
-  EXPECT_LT(worst(ours, "PSXC", nimbus, "PSFDC", "hPa"), pressure_tolerance);
-  EXPECT_LT(worst(ours, "QCXC", nimbus, "QCRC", "hPa"), pressure_tolerance);
-  EXPECT_LT(worst(ours, "PSXC", nimbus, "PSXC", "hPa"), pressure_tolerance);
-  EXPECT_LT(worst(ours, "QCXC", nimbus, "QCXC", "hPa"), pressure_tolerance);
+  const Flight ours = process(published("c130-psfd-qcr-2003.toml"));
+  EXPECT_LT(worst(ours, "PSXC", "PSFDC", "hPa"), pressure_tolerance);
+  EXPECT_LT(worst(ours, "QCXC", "QCRC", "hPa"), pressure_tolerance);
+  EXPECT_LT(worst(ours, "PSXC", "PSXC", "hPa"), pressure_tolerance);
+  EXPECT_LT(worst(ours, "QCXC", "QCXC", "hPa"), pressure_tolerance);
 }
 
 TEST_F(RealFlight, PitotPairPressuresAgreeWithNimbus) {
-  const Flight nimbus(path_);
-  const Flight ours = process(read_model(model_path("c130-psfd-qcf-2003.toml")));
-  EXPECT_LT(worst(ours, "PSXC", nimbus, "PSFDC", "hPa"), pressure_tolerance);
-  EXPECT_LT(worst(ours, "QCXC", nimbus, "QCFC", "hPa"), pressure_tolerance);
+  const Flight ours = process(published("c130-psfd-qcf-2003.toml"));
+  EXPECT_LT(worst(ours, "PSXC", "PSFDC", "hPa"), pressure_tolerance);
+  EXPECT_LT(worst(ours, "QCXC", "QCFC", "hPa"), pressure_tolerance);
 }
 
 // In 2004 nimbus took the constants of dry air for Mach number and temperature.
 TEST_F(RealFlight, DryMachNumberAndTemperatureAgreeWithNimbus) {
-  const Flight nimbus(path_);
-  ModelDefinition model = read_model(model_path("c130-psfd-qcr-2003.toml"));
+  ModelDefinition model = published("c130-psfd-qcr-2003.toml");
   model.model.moist = false;
   const Flight ours = process(model);
-  EXPECT_LT(worst(ours, "MACHX", nimbus, "XMACH2", "1", [](double mach) { return mach * mach; }), 5e-6);
-  EXPECT_LT(worst(ours, "ATX", nimbus, "ATRR", "degC"), 5e-4);
+  EXPECT_LT(worst(ours, "MACHX", "XMACH2", "1", [](double mach) { return mach * mach; }), 5e-6);
+  EXPECT_LT(worst(ours, "ATX", "ATRR", "degC"), 5e-4);
 }
 
 // Its airspeed was that of moist air.
 TEST_F(RealFlight, MoistAirspeedAgreesWithNimbus) {
-  const Flight nimbus(path_);
-  const Flight ours = process(read_model(model_path("c130-psfd-qcr-2003.toml")));
-  EXPECT_LT(worst(ours, "TASX", nimbus, "TASX", "m/s"), 0.01);
+  const Flight ours = process(published("c130-psfd-qcr-2003.toml"));
+  EXPECT_LT(worst(ours, "TASX", "TASX", "m/s"), 0.01);
 }
 
 TEST_F(RealFlight, SummaryHasCountsAndOutputs) {
-  process(read_model(model_path("c130-psfd-qcr-2003.toml")));
+  process(published("c130-psfd-qcr-2003.toml"));
   EXPECT_EQ(summary_.records, 3061U);
   EXPECT_EQ(summary_.rate, 1);
   EXPECT_GT(summary_.corrected, 2000U);

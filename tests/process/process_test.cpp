@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -17,11 +16,13 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/physics/lams.hpp>
+#include <pcor/realtime/loop.hpp>
 #include <pcor/realtime/low_pass.hpp>
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/says.hpp"
 #include "support/temporary_directory.hpp"
+#include "support/values_of.hpp"
 
 namespace pcor {
 namespace {
@@ -66,6 +67,13 @@ parameters = { a2 = 0.030849643 }
 )");
 }
 
+// The same without the laser.
+ModelDefinition law_model() {
+  ModelDefinition model = lams_model();
+  model.variables.erase(Quantity::lams_airspeed);
+  return model;
+}
+
 // Instrument readings in air that moves at `airspeed` with the static defect `defect`.
 struct Reading {
   double static_pressure, dynamic_pressure, attack_pressure, recovery_temperature, beam_speed;
@@ -85,29 +93,32 @@ Reading reading(double airspeed, double defect) {
           recovery_temperature(temperature, mach, 0.95, air), airspeed * beam_cosine(1.5, 0.0, attack, 0.0)};
 }
 
-// Writes a flight with the given number of samples in which the true static pressure is 700 hPa and delta-p
+// Writes a flight of readings, `rate` for each record.
+void write_readings(const std::filesystem::path& path, const std::vector<double>& time, int rate,
+                    const std::vector<Reading>& readings) {
+  test::NetcdfMaker maker(path);
+  maker.time(time);
+  const auto put = [&](const char* name, const char* unit, const auto& value_of) {
+    std::vector<double> values;
+    for (const Reading& each : readings) values.push_back(value_of(each));
+    maker.series(name, unit, values, rate);
+  };
+  put("PSFD", "mbar", [](const Reading& r) { return r.static_pressure; });
+  put("QCF", "hPa", [](const Reading& r) { return r.dynamic_pressure; });
+  put("QCR", "Pa", [](const Reading& r) { return 100.0 * r.dynamic_pressure; });
+  put("ADIFR", "mb", [](const Reading& r) { return r.attack_pressure; });
+  put("TTRR", "deg_C", [](const Reading& r) { return r.recovery_temperature - 273.15; });
+  put("VLAMS", "M/s", [](const Reading& r) { return r.beam_speed; });
+  maker.series("EDPC", "hPa", std::vector<double>(time.size(), vapor_pressure));
+}
+
+// Writes a flight with the given number of records in which the true static pressure is 700 hPa and delta-p
 // is 2 hPa.
 void write_flight(const std::filesystem::path& path, std::size_t records, int rate, double start = 50000.0) {
-  const std::size_t samples = records * static_cast<std::size_t>(rate);
-  std::vector<double> p, q, radome, attack, temperature, beam;
-  for (std::size_t i = 0; i < samples; ++i) {
-    const Reading r = reading(110.0 + 20.0 * std::sin(0.001 * static_cast<double>(i)), 2.0);
-    p.push_back(r.static_pressure);
-    q.push_back(r.dynamic_pressure);
-    radome.push_back(100.0 * r.dynamic_pressure);
-    attack.push_back(r.attack_pressure);
-    temperature.push_back(r.recovery_temperature - 273.15);
-    beam.push_back(r.beam_speed);
-  }
-  test::NetcdfMaker maker(path);
-  maker.time(test::sequence(start, records));
-  maker.series("PSFD", "mbar", p, rate);
-  maker.series("QCF", "hPa", q, rate);
-  maker.series("QCR", "Pa", radome, rate);
-  maker.series("ADIFR", "mb", attack, rate);
-  maker.series("TTRR", "deg_C", temperature, rate);
-  maker.series("VLAMS", "M/s", beam, rate);
-  maker.series("EDPC", "hPa", std::vector<double>(records, vapor_pressure));
+  std::vector<Reading> readings;
+  for (std::size_t i = 0; i < records * static_cast<std::size_t>(rate); ++i)
+    readings.push_back(reading(110.0 + 20.0 * std::sin(0.001 * static_cast<double>(i)), 2.0));
+  write_readings(path, test::sequence(start, records), rate, readings);
 }
 
 /// Inputs in level flight: name, unit and value.
@@ -130,11 +141,16 @@ class Process : public testing::Test {
   }
 
   std::vector<double> read(const std::string& name, const std::string& unit) {
-    const Flight flight(output_);
-    std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
-    const UnitConversion conversion = unit.empty() ? UnitConversion() : flight.conversion(name, unit);
-    flight.read(name, {0, flight.records()}, conversion, values.data());
-    return values;
+    return test::values_of(Flight(output_), name, unit);
+  }
+
+  using Series = std::tuple<const char*, const char*, std::vector<double>>;
+
+  /// Writes a flight of series: name, unit and values.
+  void write_series(const std::vector<double>& time, const std::vector<Series>& all) const {
+    test::NetcdfMaker maker(input_);
+    maker.time(time);
+    for (const auto& [name, unit, values] : all) maker.series(name, unit, values);
   }
 
   /// Writes a level flight. @param flaps percent; empty: not recorded. @param dead sensor that records -9999
@@ -148,8 +164,7 @@ class Process : public testing::Test {
   }
 
   std::string attribute(const std::string& variable, const std::string& name) const {
-    const auto attributes = Flight(output_).variable(variable).attributes;
-    return std::map<std::string, std::string>(attributes.begin(), attributes.end()).at(name);
+    return Flight(output_).variable(variable).attribute(name);
   }
 
   test::TemporaryDirectory directory_;
@@ -272,9 +287,7 @@ TEST_F(Process, WorksWithoutALaser) {
 
 TEST_F(Process, RefusesLamsWithoutALaser) {
   write_flight(input_, 10, 1);
-  ModelDefinition model = lams_model();
-  model.variables.erase(Quantity::lams_airspeed);
-  EXPECT_THAT(test::error_of([&] { process_flight(input_, model, output_, {CorrectWith::lams}); }),
+  EXPECT_THAT(test::error_of([&] { process_flight(input_, law_model(), output_, {CorrectWith::lams}); }),
               test::IsError(Error::Code::model, "lams_airspeed"));
   EXPECT_FALSE(std::filesystem::exists(output_));
 }
@@ -296,13 +309,9 @@ TEST_F(Process, FormulasUseVariablesOfTheFile) {
 }
 
 TEST_F(Process, CalibratesARecordedAmbientTemperature) {
-  {
-    test::NetcdfMaker maker(input_);
-    maker.time(test::sequence(100.0, 3));
-    maker.series("PSFD", "hPa", {700, 700, 700});
-    maker.series("QCF", "hPa", {60, 60, 60});
-    maker.series("ATX", "degC", {-20, 0, 10});
-  }
+  write_series(
+      test::sequence(100.0, 3),
+      {{"PSFD", "hPa", {700, 700, 700}}, {"QCF", "hPa", {60, 60, 60}}, {"ATX", "degC", {-20, 0, 10}}});
   const auto model = [](const std::string& effect) {
     return pressure_model(R"(
 ambient_temperature = "ATX"
@@ -335,24 +344,13 @@ class FilteredTemperature : public Process {
   /// The samples `missing` have no laser airspeed; `time` holds one second for each record.
   void write_swinging(const std::vector<double>& time, int rate, double period,
                       const std::vector<std::size_t>& missing = {}) {
-    const std::size_t samples = time.size() * static_cast<std::size_t>(rate);
-    const Reading r = reading(120.0, 2.0);
-    std::vector<double> beam;
-    for (std::size_t i = 0; i < samples; ++i) {
+    std::vector<Reading> readings(time.size() * static_cast<std::size_t>(rate), reading(120.0, 2.0));
+    for (std::size_t i = 0; i < readings.size(); ++i) {
       const double seconds = static_cast<double>(i) / rate;
-      beam.push_back(r.beam_speed * (1.0 + 0.005 * std::sin(2.0 * 3.14159265358979 * seconds / period)));
+      readings[i].beam_speed *= 1.0 + 0.005 * std::sin(2.0 * 3.14159265358979 * seconds / period);
     }
-    for (const std::size_t gone : missing) beam[gone] = std::nan("");
-    test::NetcdfMaker maker(input_);
-    maker.time(time);
-    const auto constant = [&](double value) { return std::vector<double>(samples, value); };
-    maker.series("PSFD", "hPa", constant(r.static_pressure), rate);
-    maker.series("QCF", "hPa", constant(r.dynamic_pressure), rate);
-    maker.series("QCR", "hPa", constant(r.dynamic_pressure), rate);
-    maker.series("ADIFR", "hPa", constant(r.attack_pressure), rate);
-    maker.series("TTRR", "K", constant(r.recovery_temperature), rate);
-    maker.series("VLAMS", "m/s", beam, rate);
-    maker.series("EDPC", "hPa", std::vector<double>(time.size(), vapor_pressure));
+    for (const std::size_t gone : missing) readings[gone].beam_speed = std::nan("");
+    write_readings(input_, time, rate, readings);
   }
 
   std::vector<double> difference() {
@@ -486,8 +484,7 @@ TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
       maker->series(name, unit, values);
     }
     maker.reset();  // writes it
-    ModelDefinition model = lams_model();
-    model.variables.erase(Quantity::lams_airspeed);
+    const ModelDefinition model = law_model();
     const ProcessSummary summary = process_flight(input_, model, output_);
     EXPECT_THAT(summary.notes, Contains(test::Says(frozen + " is frozen")));
     const std::string result = frozen == "TTRR" ? "TASX" : "PSXC";
@@ -522,8 +519,7 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
     }
     return marked;
   };
-  ModelDefinition model = lams_model();
-  model.variables.erase(Quantity::lams_airspeed);
+  ModelDefinition model = law_model();
   model.variables[Quantity::flaps] = "FLAPS";
   EXPECT_EQ(outside(model, 50.0), records - extended_from);
   EXPECT_EQ(outside(model, 4.0), 0U);
@@ -541,9 +537,7 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
 TEST_F(Process, DeadPressureSensorGivesNoResultInAnyRecord) {
   for (const std::string dead : {"PSFD", "QCF"}) {
     write_level(40, {}, dead);
-    ModelDefinition model = lams_model();
-    model.variables.erase(Quantity::lams_airspeed);
-    EXPECT_EQ(process_flight(input_, model, output_).corrected, 0U) << dead;
+    EXPECT_EQ(process_flight(input_, law_model(), output_).corrected, 0U) << dead;
   }
 }
 
@@ -556,12 +550,7 @@ TEST_F(Process, ReportsUnevenSamples) {
     p.push_back(600.0 + 0.5 * (each - 50000.0));
     q.push_back(60.0 + 0.01 * (each - 50000.0));
   }
-  {
-    test::NetcdfMaker maker(input_);
-    maker.time(time);
-    maker.series("PSFD", "hPa", p);
-    maker.series("QCF", "hPa", q);
-  }
+  write_series(time, {{"PSFD", "hPa", p}, {"QCF", "hPa", q}});
   const ModelDefinition model = pressure_model(R"(
 [[effect]]
 id = "static-lag"
@@ -583,26 +572,14 @@ TEST_F(Process, SeparatesRampAndFlight) {
   constexpr std::size_t samples = 3000;
   std::mt19937_64 engine(1);
   std::normal_distribution<double> noise(0.0, 0.2);
-  {
-    std::vector<double> p, q, attack, temperature;
-    for (std::size_t i = 0; i < samples; ++i) {
-      Reading r = reading(110.0 + 20.0 * std::sin(0.01 * static_cast<double>(i)), 2.0);
-      if (i < ramp) r = {900.0, noise(engine), noise(engine), 288.0, 0.0};
-      p.push_back(r.static_pressure);
-      q.push_back(r.dynamic_pressure);
-      attack.push_back(r.attack_pressure);
-      temperature.push_back(r.recovery_temperature);
-    }
-    test::NetcdfMaker maker(input_);
-    maker.time(test::sequence(50000.0, samples / 25));
-    maker.series("PSFD", "hPa", p, 25);
-    maker.series("QCF", "hPa", q, 25);
-    maker.series("QCR", "hPa", q, 25);
-    maker.series("ADIFR", "hPa", attack, 25);
-    maker.series("TTRR", "K", temperature, 25);
-    maker.series("EDPC", "hPa", std::vector<double>(samples / 25, vapor_pressure));
+  std::vector<Reading> readings;
+  for (std::size_t i = 0; i < samples; ++i) {
+    Reading r = reading(110.0 + 20.0 * std::sin(0.01 * static_cast<double>(i)), 2.0);
+    if (i < ramp) r = {900.0, noise(engine), noise(engine), 288.0, 0.0};
+    readings.push_back(r);
   }
-  const ProcessSummary summary = process_flight(input_, lams_model(), output_);
+  write_readings(input_, test::sequence(50000.0, samples / 25), 25, readings);
+  const ProcessSummary summary = process_flight(input_, law_model(), output_);
   const std::vector<double> airspeed = read("TASX", "m/s"), defect = read("PCOR", "hPa"),
                             flags = read("PCORFLAG", "");
   double sum = 0.0;
@@ -647,6 +624,26 @@ TEST_F(Process, WritesUncertaintiesBesideTheirResults) {
   EXPECT_EQ(std::count_if(summary.notes.begin(), summary.notes.end(), is_of_thermometer), 1);
   // The thermometer's 0.3 K and 0.005 of the recovery heating, about 8 K: all other terms are smaller.
   EXPECT_NEAR(read("ATX_uncertainty_NEW", "K")[5], 0.3, 0.01);
+}
+
+TEST_F(Process, UncertaintiesEqualThoseOfTheLoop) {
+  write_flight(input_, 20, 1);
+  const ModelDefinition file = uncertain_model();
+  process_flight(input_, file, output_);
+  std::string error;
+  auto loop = Loop::build(file.model, file.roles(), 1.0, &error, CorrectWith::model, uncertainty_of(file));
+  ASSERT_TRUE(loop) << error;
+  for (const auto& [role, variable] : file.variables)
+    loop->state()[role] = read(variable, std::string(info_of(role).unit))[0];
+  loop->run(0.0);
+  for (const auto& [name, quantity] :
+       {std::pair{"ATX_uncertainty", Quantity::ambient_temperature_uncertainty},
+        {"PSXC_uncertainty", Quantity::corrected_static_pressure_uncertainty},
+        {"TASX_uncertainty", Quantity::corrected_airspeed_uncertainty}}) {
+    // 32-bit floats
+    EXPECT_NEAR(loop->state()[quantity] / read(name, std::string(info_of(quantity).unit))[0], 1.0, 1e-5)
+        << name;
+  }
 }
 
 TEST_F(Process, WritesTheRequestedUncertainties) {
@@ -724,22 +721,17 @@ TEST_F(Process, AdvisesIfTheModelStatesNoUncertainty) {
   }
 }
 
+const std::string temperature_and_humidity = "recovery_temperature = \"TTRR\"\nvapor_pressure = \"EDPC\"\n";
+
 // In air of one temperature the hydrostatic equation has a closed form: H = R_a T/g0 ln(p_0/p).
 TEST_F(Process, HydrostaticStepsSumToTheHeight) {
   const double nan = std::nan("");
   const std::vector<double> p{900, 850, 800, 700, 600, nan, 500, 400};
-  {
-    test::NetcdfMaker maker(input_);
-    maker.time({100, 101, 102, 103, 104, 105, 106, 200});
-    maker.series("PSFD", "hPa", p);
-    maker.series("QCF", "hPa", std::vector<double>(8, 60.0));
-    maker.series("TTRR", "degC", std::vector<double>(8, 5.0));
-    maker.series("EDPC", "hPa", std::vector<double>(8, 0.0));
-  }
-  ModelDefinition model = pressure_model(R"(
-recovery_temperature = "TTRR"
-vapor_pressure = "EDPC"
-)");
+  write_series({100, 101, 102, 103, 104, 105, 106, 200}, {{"PSFD", "hPa", p},
+                                                          {"QCF", "hPa", std::vector<double>(8, 60.0)},
+                                                          {"TTRR", "degC", std::vector<double>(8, 5.0)},
+                                                          {"EDPC", "hPa", std::vector<double>(8, 0.0)}});
+  ModelDefinition model = pressure_model(temperature_and_humidity);
   EXPECT_THAT(process_flight(input_, model, output_).outputs, testing::Not(Contains("HYDSTEP")));
   model.model.effects.push_back({"temp-calibration", {0.5, -0.01, 0.0001}});
   ProcessOptions options;
@@ -760,19 +752,11 @@ vapor_pressure = "EDPC"
 
 // Vapour makes air lighter: R_a grows by 0.378 e/p.
 TEST_F(Process, HydrostaticStepsIncludeVapour) {
-  {
-    test::NetcdfMaker maker(input_);
-    maker.time({100, 101});
-    maker.series("PSFD", "hPa", {900, 890});
-    maker.series("QCF", "hPa", {60, 60});
-    maker.series("TTRR", "degC", {20, 20});
-    maker.series("EDPC", "hPa", {9.0, 8.9});
-  }
-  ModelDefinition model = lams_model();
-  model.model.effects.clear();
-  model.variables.erase(Quantity::lams_airspeed);
-  model.variables.erase(Quantity::radome_dynamic_pressure);
-  model.variables.erase(Quantity::attack_differential_pressure);
+  write_series({100, 101}, {{"PSFD", "hPa", {900, 890}},
+                            {"QCF", "hPa", {60, 60}},
+                            {"TTRR", "degC", {20, 20}},
+                            {"EDPC", "hPa", {9.0, 8.9}}});
+  const ModelDefinition model = pressure_model(temperature_and_humidity);
   ProcessOptions options;
   options.hydrostatic = true;
   process_flight(input_, model, output_, options);
@@ -784,12 +768,8 @@ TEST_F(Process, HydrostaticStepsIncludeVapour) {
 // A lag needs samples before and after; each gap ends a series, of which nothing is lost but a sample that is
 // alone.
 TEST_F(Process, RatesAreAvailableOnBothSidesOfAGap) {
-  {
-    test::NetcdfMaker maker(input_);
-    maker.time({100, 101, 102, 103, 203, 204, 304});
-    maker.series("PSFD", "hPa", {700, 701, 702, 703, 800, 801, 900});
-    maker.series("QCF", "hPa", std::vector<double>(7, 60.0));
-  }
+  write_series({100, 101, 102, 103, 203, 204, 304}, {{"PSFD", "hPa", {700, 701, 702, 703, 800, 801, 900}},
+                                                     {"QCF", "hPa", std::vector<double>(7, 60.0)}});
   const ModelDefinition model = pressure_model(R"(
 [humidity]
 moist = false
@@ -820,13 +800,9 @@ class NoisyLag : public Process {
     std::vector<double> temperature(records);
     for (std::size_t i = 0; i < records; ++i)
       temperature[i] = 270.0 + climb * std::max(0.0, static_cast<double>(i) - 1500.0) + normal(generator);
-    {
-      test::NetcdfMaker maker(input_);
-      maker.time(test::sequence(100, records));
-      maker.series("PSFD", "hPa", std::vector<double>(records, 700.0));
-      maker.series("QCF", "hPa", std::vector<double>(records, 60.0));
-      maker.series("TTRR", "K", temperature);
-    }
+    write_series(test::sequence(100, records), {{"PSFD", "hPa", std::vector<double>(records, 700.0)},
+                                                {"QCF", "hPa", std::vector<double>(records, 60.0)},
+                                                {"TTRR", "K", temperature}});
     const ModelDefinition model = pressure_model(R"(
 recovery_temperature = "TTRR"
 [humidity]

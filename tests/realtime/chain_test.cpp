@@ -1011,10 +1011,14 @@ TEST(Ramp, AirspeedNeedsAMinimumDynamicPressure) {
 // Models that Chain::build refuses, and its messages.
 
 TEST(Build, RequiresBothPressures) {
-  EXPECT_EQ(error_of({}, {{Quantity::dynamic_pressure, 0}}),
-            "the chain needs the role 'static_pressure': name its variable in the table [variables]");
-  EXPECT_EQ(error_of({}, {{Quantity::static_pressure, 0}}),
-            "the chain needs the role 'dynamic_pressure': name its variable in the table [variables]");
+  EXPECT_EQ(
+      error_of({}, {{Quantity::dynamic_pressure, 0}}),
+      "the chain needs the role 'static_pressure', which is not among the recorded quantities; add it, in a "
+      "model file as a variable in [variables]");
+  EXPECT_EQ(
+      error_of({}, {{Quantity::static_pressure, 0}}),
+      "the chain needs the role 'dynamic_pressure', which is not among the recorded quantities; add it, in a "
+      "model file as a variable in [variables]");
 }
 
 TEST(Build, UnknownEffectIsRefused) {
@@ -1025,15 +1029,16 @@ TEST(Build, UnknownEffectIsRefused) {
 }
 
 TEST(Build, MissingEffectInputIsRefused) {
-  EXPECT_EQ(
-      error_of(with(truth.model(), catalogued("static-alpha", {1})), truth.recorded()),
-      "effect 'static-alpha' needs the role 'attack_differential_pressure': name its variable in the table "
-      "[variables]");
+  EXPECT_EQ(error_of(with(truth.model(), catalogued("static-alpha", {1})), truth.recorded()),
+            "effect 'static-alpha' needs the role 'attack_differential_pressure', which is not among the "
+            "recorded quantities; add it, in a "
+            "model file as a variable in [variables]");
   const Recorded no_attack = without(without(truth.recorded(), Quantity::lams_airspeed), Quantity::attack);
-  EXPECT_EQ(
-      error_of(with(truth.model(), catalogued("static-attack", {1})), no_attack),
-      "effect 'static-attack' needs the role 'attack': name its variable in the table [variables], or give "
-      "[radome] attack = [offset, slope] to derive it from the radome pressures");
+  EXPECT_EQ(error_of(with(truth.model(), catalogued("static-attack", {1})), no_attack),
+            "effect 'static-attack' needs the role 'attack', which is not among the recorded quantities; add "
+            "it, in a "
+            "model file as a variable in [variables], or give [radome] attack = [offset, slope] to derive it "
+            "from the radome pressures");
   Model radome = with(truth.model(), catalogued("static-attack", {1}));
   radome.attack_radome = {5.776, 15.031, 0.0};
   EXPECT_THAT(error_of(radome, no_attack), HasSubstr("'attack_differential_pressure'"));
@@ -1047,8 +1052,9 @@ TEST(Build, InvalidFormulaIsRefused) {
                      truth.recorded()),
             "effect 'of-the-user' takes 1 parameter(s), not 2");
   EXPECT_EQ(error_of(with(truth.model(), written(EffectLocation::static_defect, "flaps")), truth.recorded()),
-            "the formula of effect 'of-the-user' needs the role 'flaps': name its variable in the table "
-            "[variables]");
+            "the formula of effect 'of-the-user' needs the role 'flaps', which is not among the recorded "
+            "quantities; add it, in a "
+            "model file as a variable in [variables]");
   EXPECT_EQ(error_of(with(truth.model(), written(EffectLocation::static_defect, "corrected_mach")),
                      truth.recorded()),
             "the formula of effect 'of-the-user' needs 'corrected_mach', which is known only after delta-p");
@@ -1075,7 +1081,9 @@ TEST(Build, UnknownDomainQuantityIsRefused) {
   EXPECT_EQ(error_of(model, truth.recorded()), "there is no quantity 'speed'");
   model.domain = {{"flaps", 0, 1}};
   EXPECT_EQ(error_of(model, truth.recorded()),
-            "the domain of the model needs the role 'flaps': name its variable in the table [variables]");
+            "the domain of the model needs the role 'flaps', which is not among the recorded quantities; add "
+            "it, in a "
+            "model file as a variable in [variables]");
   model.domain = {{"corrected_mach", 0, 1}};
   EXPECT_THAT(error_of(model, truth.recorded()), HasSubstr("known only after delta-p"));
 }
@@ -1083,12 +1091,16 @@ TEST(Build, UnknownDomainQuantityIsRefused) {
 TEST(Build, MissingLamsInputIsRefused) {
   EXPECT_THAT(error_of(truth.model(), without(truth.recorded(), Quantity::attack)),
               HasSubstr("LAMS, for the angle between its beam and the wind, needs the role 'attack'"));
-  EXPECT_EQ(error_of(truth.model(), without(truth.recorded(), Quantity::recovery_temperature)),
-            "LAMS needs the role 'recovery_temperature': name its variable in the table [variables]");
+  EXPECT_EQ(
+      error_of(truth.model(), without(truth.recorded(), Quantity::recovery_temperature)),
+      "LAMS needs the role 'recovery_temperature', which is not among the recorded quantities; add it, in a "
+      "model file as a variable in [variables]");
   Model model = truth.model();
   model.lams.approach = LamsApproach::with_temperature;
-  EXPECT_EQ(error_of(model, truth.recorded()),
-            "LAMS needs the role 'ambient_temperature': name its variable in the table [variables]");
+  EXPECT_EQ(
+      error_of(model, truth.recorded()),
+      "LAMS needs the role 'ambient_temperature', which is not among the recorded quantities; add it, in a "
+      "model file as a variable in [variables]");
   model = truth.model();
   model.sideslip_radome = {0.0, 20.0, 0.0};
   EXPECT_THAT(error_of(model, without(truth.recorded(), Quantity::sideslip)),

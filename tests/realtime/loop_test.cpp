@@ -212,6 +212,126 @@ TEST(LoopOrder, TwoWritersOfAQuantityAreRefused) {
   EXPECT_EQ(error, "two functors write 'static_defect'");
 }
 
+// The element of an unknown name, and variables that were not added.
+TEST(LoopOrder, UndeclaredVariableIsRefused) {
+  for (const Quantity wrong : {pcor::quantity_named("corected_mach"), pcor::extra_quantity(1),
+                               pcor::extra_quantity(pcor::extra_capacity)}) {
+    for (const bool is_output : {false, true}) {
+      Loop loop = build(c130(), level, 1.0);
+      const Quantity known = *loop.add_variable("known");
+      loop.add(is_output ? sum({known}, wrong) : sum({wrong}, known));
+      std::string error;
+      EXPECT_FALSE(loop.order(&error));
+      EXPECT_NE(error, "");
+    }
+  }
+}
+
+TEST(Loop, UnknownRecordedQuantityIsRefused) {
+  std::string error;
+  for (const Quantity wrong : {Quantity::count, pcor::extra_quantity(pcor::extra_capacity)}) {
+    std::vector<Quantity> recorded = roles(level);
+    recorded.push_back(wrong);
+    EXPECT_FALSE(Loop::build(c130(), recorded, 1.0, &error));
+    EXPECT_THAT(error, HasSubstr(std::to_string(index(wrong))));
+  }
+}
+
+// Numbers that the reader of model files refuses.
+TEST(Loop, ImpossibleNumbersOfTheModelAreRefused) {
+  using Change = std::function<void(Model&)>;
+  const std::map<std::string, Change> changes{
+      {"NaN", [](Model& model) { model.effects[0].parameters[0] = missing; }},
+      {"bounds", [](Model& model) { model.effects[2].parameters[0] = 30.8; }},
+      {"twice", [](Model& model) { model.effects.push_back(model.effects[0]); }},
+      {"scaling", [](Model& model) { model.effects[0].scaling.static_pressure = 4; }},
+      {"infinite formula",
+       [](Model& model) {
+         model.effects.push_back(formula(EffectLocation::static_defect, "k", {"k"}, {infinity}));
+       }},
+      {"recovery in percent", [](Model& model) { model.recovery = {{95.0}}; }},
+      {"recovery below zero", [](Model& model) { model.recovery = {{-1.0}}; }},
+      {"recovery NaN", [](Model& model) { model.recovery = {{missing}}; }},
+      {"recovery infinite",
+       [](Model& model) {
+         model.recovery = {{0.95, infinity}};
+       }},
+      {"taper", [](Model& model) { model.policy.taper_below = missing; }},
+      {"power", [](Model& model) { model.policy.taper_power = -1.0; }},
+      {"minimum", [](Model& model) { model.policy.minimum = missing; }},
+      {"airflow", [](Model& model) { model.policy.min_dynamic_pressure = missing; }},
+      {"reversed",
+       [](Model& model) {
+         model.domain = {{"mach", 0.5, 0.2}};
+       }},
+      {"half",
+       [](Model& model) {
+         model.domain = {{"mach", missing, 0.2}};
+       }},
+      {"beam", [](Model& model) { model.lams.elevation = missing; }},
+      {"radome", [](Model& model) { model.attack_radome.slope = infinity; }},
+  };
+  for (const auto& [name, change] : changes) {
+    Model model = c130();
+    change(model);
+    std::string error;
+    EXPECT_FALSE(Loop::build(model, roles(level), 1.0, &error)) << name;
+    EXPECT_NE(error, "") << name;
+  }
+  Model model = c130();
+  model.domain = {{"mach", -infinity, 0.9}};
+  EXPECT_TRUE(Loop::build(model, roles(level), 1.0, nullptr));
+}
+
+// Above Mach 1 the equations do not hold: swapped pressures would give Mach 2.2.
+TEST(Loop, SupersonicPressuresGiveNoResult) {
+  const Sample recorded{{Quantity::static_pressure, 700.0},
+                        {Quantity::dynamic_pressure, 67.6},
+                        {Quantity::recovery_temperature, 280.0}};
+  Model model;
+  model.effects = {{"static-constant", {0.004}}, {"static-qp", {0.03}}};
+  for (const double taper : {0.0, 20.0}) {
+    model.policy.taper_below = taper;
+    Loop loop = build(model, recorded, 1.0);
+    for (const auto& [p, q] : {std::pair{67.6, 700.0}, {250.0, 260.0}, {250.0, 223.3}}) {
+      run(loop, with(recorded, {{Quantity::static_pressure, p}, {Quantity::dynamic_pressure, q}}), 0.0);
+      for (const Quantity result : {Quantity::static_defect, Quantity::corrected_static_pressure,
+                                    Quantity::corrected_mach, Quantity::corrected_airspeed})
+        EXPECT_THAT(loop.state()[result], IsNan()) << pcor::info_of(result).name << ' ' << q;
+      EXPECT_TRUE(loop.quality().has(Quality::impossible_dynamic_pressure)) << q;
+      loop.reset();
+    }
+    // Mach 0.97
+    run(loop, with(recorded, {{Quantity::static_pressure, 250.0}, {Quantity::dynamic_pressure, 208.0}}), 0.0);
+    EXPECT_EQ(own_bits(loop), bits({Quality::dry_air_assumed}));
+    EXPECT_NEAR(loop.state()[Quantity::corrected_mach], 0.96, 0.02);
+  }
+}
+
+// The limit of process is 5 percent.
+TEST(Loop, ExtendedFlapsAreOutsideTheDomain) {
+  Sample recorded = with(level, {{Quantity::flaps, 0.0}});
+  recorded.erase(Quantity::lams_airspeed);
+  const auto is_flagged = [&](const Model& model, double flaps) {
+    Loop loop = build(model, recorded, 1.0);
+    run(loop, with(recorded, {{Quantity::flaps, flaps}}), 0.0);
+    return loop.quality().has(Quality::outside_domain);
+  };
+  EXPECT_FALSE(is_flagged(c130(), pcor::flaps_in));
+  EXPECT_TRUE(is_flagged(c130(), pcor::flaps_in + 0.1));
+  EXPECT_FALSE(is_flagged(c130(), missing));
+  Model neutral = c130();
+  neutral.effects.push_back({"flaps-gear", {0.0}});
+  EXPECT_TRUE(is_flagged(neutral, 40.0));
+  Model described = c130();
+  described.effects.push_back({"flaps-gear", {0.001}});
+  EXPECT_FALSE(is_flagged(described, 40.0));
+  Model ranged = c130();
+  ranged.domain = {{"flaps", 0.0, 50.0}};
+  EXPECT_FALSE(is_flagged(ranged, 40.0));
+  EXPECT_FALSE(is_flagged(Model{}, 40.0)) << "changes nothing";
+}
+
 TEST(LoopOrder, CircularDependencyIsRefusedAndReported) {
   Loop loop(1.0);
   const Quantity a = *loop.add_variable("a");
@@ -665,11 +785,30 @@ TEST(LoopGap, FlagsAnIsolatedSample) {
   EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
 }
 
-TEST(LoopGap, GapSetsNoFlagWithoutRates) {
+TEST(LoopGap, RestartSetsABit) {
   Loop loop = build(c130(), level, 1.0);
   run(loop, level, 0.0);
+  EXPECT_EQ(own_bits(loop), 0U) << "the first sample";
   run(loop, level, 50.0);
-  EXPECT_FALSE(loop.quality().has(Quality::after_gap)) << "no rate of change is in use";
+  EXPECT_EQ(own_bits(loop), bits({Quality::after_gap}));
+  run(loop, level, 51.0);
+  EXPECT_EQ(own_bits(loop), 0U);
+  for (const double time : {51.0, 50.0, missing, missing}) {
+    run(loop, level, time);
+    EXPECT_TRUE(loop.quality().has(Quality::uneven_samples)) << time;
+  }
+  loop.reset();
+  run(loop, level, 100.0);
+  EXPECT_EQ(own_bits(loop), 0U) << "after reset";
+}
+
+// Every sample restarts the watch of frozen sensors.
+TEST(LoopGap, WrongRateSetsABitAtEverySample) {
+  Loop loop = build(c130(), level, 25.0);
+  for (int i = 0; i < 5; ++i) {
+    run(loop, level, i);
+    EXPECT_EQ(loop.quality().has(Quality::after_gap), i > 0);
+  }
 }
 
 TEST(LoopVariables, EachNameHasOneIndex) {
@@ -821,14 +960,36 @@ TEST(LoopFunctors, CircularDependencyIsRefused) {
   EXPECT_THAT(error, HasSubstr("'vapor_pressure'"));
 }
 
+// A laser without lock shows any speed: beyond a static defect of three tenths of q the model corrects.
+TEST(LoopLams, LaserWithoutLockIsReplacedByTheModel) {
+  Loop loop = build(c130(), level, 1.0, CorrectWith::lams);
+  Loop model = build(c130(), level, 1.0);
+  double time = 0.0;
+  for (const auto& [speed, is_locked] :
+       {std::pair{117.0, true}, {122.0, true}, {60.0, false}, {90.0, false}, {140.0, false}, {117.0, true}}) {
+    const Sample sample = with(level, {{Quantity::lams_airspeed, speed}});
+    run(loop, sample, time);
+    run(model, sample, time);
+    time += 1.0;
+    EXPECT_EQ(loop.quality().has(Quality::corrected_with_lams), is_locked) << speed;
+    EXPECT_EQ(loop.quality().has(Quality::lams_missing), !is_locked) << speed;
+    EXPECT_EQ(loop.state()[Quantity::corrected_static_pressure] ==
+                  model.state()[Quantity::corrected_static_pressure],
+              !is_locked)
+        << speed;
+    EXPECT_EQ(pcor::is_missing(loop.state()[Quantity::lams_temperature]), !is_locked) << speed;
+  }
+}
+
 TEST(LoopLams, IsRefusedWithoutLaserAirspeed) {
   Sample recorded = level;
   recorded.erase(Quantity::lams_airspeed);
   std::string error;
   EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, &error, CorrectWith::lams));
-  EXPECT_EQ(
-      error,
-      "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
+  EXPECT_EQ(error,
+            "correction with LAMS needs the role 'lams_airspeed', which is not among the recorded "
+            "quantities; add it, in a "
+            "model file as a variable in [variables]");
   EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, nullptr, CorrectWith::lams));
 }
 

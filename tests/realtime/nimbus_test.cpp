@@ -569,6 +569,24 @@ TEST(NimbusSystem, FormulaVariablesAreSetByName) {
   EXPECT_EQ(table.high("PCOR", 24), static_cast<float>(2.0 * static_cast<double>(50.96F) / 100.0));
 }
 
+TEST(NimbusSystem, SwappedRatesAreRefused) {
+  for (const auto& [low, high] : {std::pair{25.0, 1.0}, {25.0, 25.0}, {1.0, std::nan("")}}) {
+    std::string error;
+    EXPECT_FALSE(Fuselage::install({}, {"static_pressure", "dynamic_pressure"}, low, high, &error));
+    EXPECT_NE(error, "");
+  }
+}
+
+TEST(NimbusSystem, MisspeltInputIsNamedWithTheNearestRole) {
+  std::string error;
+  EXPECT_FALSE(Fuselage::install({}, {"static_presure", "dynamic_pressure"}, 1.0, 25.0, &error));
+  EXPECT_THAT(
+      error, testing::AllOf(testing::HasSubstr("'static_presure'"), testing::HasSubstr("'static_pressure'")));
+  Model model;
+  model.recovery = {{95.0}};
+  EXPECT_FALSE(Fuselage::install(model, {"static_pressure", "dynamic_pressure"}, 1.0, 25.0, &error));
+}
+
 TEST(NimbusSystem, FailedInstallationKeepsTheInstalledModel) {
   ASSERT_TRUE(install_both());
   const auto error_of = [](const Model& model, const std::vector<std::string>& inputs,
@@ -585,9 +603,10 @@ TEST(NimbusSystem, FailedInstallationKeepsTheInstalledModel) {
   EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "static_pressure"}),
             "two inputs are 'static_pressure'");
   EXPECT_THAT(error_of({}, {"static_pressure"}), testing::HasSubstr("dynamic_pressure"));
-  EXPECT_EQ(
-      error_of({}, {"static_pressure", "dynamic_pressure"}, pcor::CorrectWith::lams),
-      "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
+  EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure"}, pcor::CorrectWith::lams),
+            "correction with LAMS needs the role 'lams_airspeed', which is not among the recorded "
+            "quantities; add it, in a "
+            "model file as a variable in [variables]");
   Model model;
   pcor::ModelEffect thrust;
   thrust.id = "my-thrust";

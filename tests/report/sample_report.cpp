@@ -35,14 +35,11 @@ const std::vector<Leg> legs{{"climb", 17, 4200, 118},   {"level", 14, 4200, 118}
 
 constexpr double start = 1054468800 + 600;  // start of the first flight, s since 1970
 
-struct Columns {
-  std::vector<double> latitude, longitude, altitude, pressure, mach, attack, sideslip, dynamic, old_model,
-      refit, total_lams, total_pitot;
-};
+constexpr std::size_t old_model = 8, refit = 9;  // among the columns of the report
 
 // One sample, `part` of the way through a leg that began at `from`.
-void add_sample(Columns& columns, const Leg& from, const Leg& leg, double part, double seconds,
-                std::mt19937& random) {
+void add_sample(std::vector<pcor::ReportColumn>& columns, const Leg& from, const Leg& leg, double part,
+                double seconds, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const bool turns = leg.regime == std::string("manoeuvre");
   const double smooth = part * part * (3 - 2 * part);
@@ -61,33 +58,34 @@ void add_sample(Columns& columns, const Leg& from, const Leg& leg, double part, 
   const double structure = 4.2 * (mach - 0.42) + 0.22 * (attack - 3) + 0.035 * sideslip * sideslip;
   // Around in an ellipse across the date line, once in three quarters of an hour.
   const double around = 2 * pi * seconds / 2700;
-  columns.latitude.push_back(52.0 + 0.9 * std::sin(around) + seconds / 9000);
-  columns.longitude.push_back(std::remainder(179.6 + 1.6 * std::cos(around), 360.0));
-  columns.altitude.push_back(altitude);
-  columns.pressure.push_back(pressure);
-  columns.mach.push_back(mach);
-  columns.attack.push_back(attack);
-  columns.sideslip.push_back(sideslip);
-  columns.dynamic.push_back(dynamic);
-  columns.old_model.push_back(red + structure + 0.35);
-  columns.refit.push_back(red + 0.06 * structure);
-  columns.total_lams.push_back(pressure + dynamic);
-  columns.total_pitot.push_back(0.31 + 0.99946 * (pressure + dynamic) + 0.12 * normal(random));
+  const double sample[] = {52.0 + 0.9 * std::sin(around) + seconds / 9000,
+                           std::remainder(179.6 + 1.6 * std::cos(around), 360.0),
+                           altitude,
+                           pressure,
+                           mach,
+                           attack,
+                           sideslip,
+                           dynamic,
+                           red + structure + 0.35,
+                           red + 0.06 * structure,
+                           pressure + dynamic,
+                           0.31 + 0.99946 * (pressure + dynamic) + 0.12 * normal(random)};
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i].values.push_back(sample[i]);
 }
 
-std::vector<pcor::ReportColumn> titled(const Columns& columns) {
-  return {{"latitude", "Latitude", "deg", columns.latitude},
-          {"longitude", "Longitude", "deg", columns.longitude},
-          {"altitude", "Altitude", "m", columns.altitude},
-          {"pressure", "Static pressure", "hPa", columns.pressure},
-          {"mach", "Mach number", "", columns.mach},
-          {"attack", "Angle of attack", "°", columns.attack},
-          {"sideslip", "Sideslip", "°", columns.sideslip},
-          {"dynamic", "Dynamic pressure", "hPa", columns.dynamic},
-          {"old", "Published model", "hPa", columns.old_model},
-          {"new", "Refit of <this> \"flight\"", "hPa", columns.refit},
-          {"total-lams", "Total pressure, LAMS", "hPa", columns.total_lams},
-          {"total-pitot", "Total pressure, pitot", "hPa", columns.total_pitot}};
+std::vector<pcor::ReportColumn> empty_columns() {
+  return {{"latitude", "Latitude", "deg", {}},
+          {"longitude", "Longitude", "deg", {}},
+          {"altitude", "Altitude", "m", {}},
+          {"pressure", "Static pressure", "hPa", {}},
+          {"mach", "Mach number", "", {}},
+          {"attack", "Angle of attack", "°", {}},
+          {"sideslip", "Sideslip", "°", {}},
+          {"dynamic", "Dynamic pressure", "hPa", {}},
+          {"old", "Published model", "hPa", {}},
+          {"new", "Refit of <this> \"flight\"", "hPa", {}},
+          {"total-lams", "Total pressure, LAMS", "hPa", {}},
+          {"total-pitot", "Total pressure, pitot", "hPa", {}}};
 }
 
 std::vector<pcor::ReportItem> items() {
@@ -195,7 +193,7 @@ std::string rms(const std::vector<double>& values) {
 pcor::Report sample_report(std::size_t samples, std::size_t flights) {
   std::mt19937 random(2003);
   pcor::Report report;
-  Columns columns;
+  report.columns = empty_columns();
   double minutes = 0;
   for (const Leg& leg : legs) minutes += leg.minutes;
   const std::size_t each = samples / flights;
@@ -211,7 +209,7 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
       const double length = leg.minutes * static_cast<double>(each) / minutes * step;
       for (; made < each && static_cast<double>(made) * step < begin + length - begins; ++made) {
         const double seconds = static_cast<double>(made) * step;
-        add_sample(columns, from, leg, (begins + seconds - begin) / length, seconds, random);
+        add_sample(report.columns, from, leg, (begins + seconds - begin) / length, seconds, random);
         report.time.push_back(begins + seconds);
       }
       report.intervals.push_back({leg.regime, begin, begin + length - step});
@@ -219,17 +217,17 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
       from = leg;
     }
     for (; made < each; ++made) {
-      add_sample(columns, from, from, 1, static_cast<double>(made), random);
+      add_sample(report.columns, from, from, 1, static_cast<double>(made), random);
       report.time.push_back(begins + static_cast<double>(made) * step);
     }
   }
   for (std::size_t i = report.time.size() / 3; i < report.time.size() / 3 + 90; ++i)
-    columns.old_model[i] = columns.refit[i] = nan;
+    report.columns[old_model].values[i] = report.columns[refit].values[i] = nan;
   report.title = "Comparison of two models of the static defect";
   report.subtitle = "C-130, flight rf01 of 1 June 2003 <script>alert('not run')</script>";
   report.summary = {
-      "The refit leaves an rms of " + rms(columns.refit) + " hPa; the published model, " +
-          rms(columns.old_model) + " hPa.",
+      "The refit leaves an rms of " + rms(report.columns[refit].values) + " hPa; the published model, " +
+          rms(report.columns[old_model].values) + " hPa.",
       "The published model errs with the Mach number and the angle of attack; the refit has no "
       "such structure.",
       "The two systems of total pressure differ by a gain of 0.99946 and an offset of 0.31 hPa."};
@@ -238,7 +236,6 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
                  {"Rate", "1 Hz"},
                  {"Models", "c130-psfd-qcr-2003, refit"},
                  {"Reference", "LAMS"}};
-  report.columns = titled(columns);
   report.items = items();
   return report;
 }

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <pcor/base/error.hpp>
-#include <pcor/residuals/reference.hpp>
 
 #include <cmath>
 #include <memory>

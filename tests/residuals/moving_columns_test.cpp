@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <pcor/fit/refit.hpp>
-#include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
 
 #include <cmath>

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <pcor/residuals/reference.hpp>
 
 #include <algorithm>
 #include <cmath>

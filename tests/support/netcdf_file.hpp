@@ -105,6 +105,15 @@ class NetcdfMaker {
   int id_ = 0;
 };
 
+/// Makes a file with these times, seconds since midnight. @param fill adds the rest
+template <class Fill>
+void make_flight(const std::filesystem::path& path, const std::vector<double>& seconds, const Fill& fill,
+                 int mode = NC_NETCDF4) {
+  NetcdfMaker maker(path, mode);
+  maker.time(seconds);
+  fill(maker);
+}
+
 /// `count` numbers from `first` on, one apart.
 inline std::vector<double> sequence(double first, std::size_t count) {
   std::vector<double> numbers(count);

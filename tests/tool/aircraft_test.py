@@ -299,6 +299,17 @@ class OtherAircraft(unittest.TestCase):
                       " ".join(note["text"] for note in stated.get("notes", [])) +
                       self.run_tool("process", "wrong.nc", "-m", "stated.toml", "-o", "w.nc").stdout)
 
+    def test_unit_of_a_role_that_the_law_does_not_read_is_noted(self):
+        (self.path / "knots.toml").write_text(
+            'format = "pcor-model/1"\nname = "stated"\n[variables]\nstatic_pressure = "PSFD"\ndynamic_pressure = "QCF"\n'
+            'roll = "ROLL"\npitch = "PITCH"\n[units]\nroll = "radian"\npitch = "degree"\n[humidity]\nmoist = false\n'
+            '[[effect]]\nid = "static-constant"\n')
+        write(self.path / "right.nc", "ncar", self.simulated)
+        notes = " ".join(note["text"] for note in
+                         self.json("compare", "right.nc", "-m", "knots.toml", "--reference", "pressure:PSXC")["notes"])
+        self.assertIn("ROLL is read in 'radian'", notes)
+        self.assertNotIn("PITCH is read", notes)
+
     def test_flight_without_pressures_is_reported(self):
         with netCDF4.Dataset(self.path / "empty.nc", "w") as file:
             file.createDimension("Time", None)

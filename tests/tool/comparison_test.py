@@ -286,6 +286,31 @@ class Compare(ComparisonTest):
             if len(models) == 1:
                 self.assertRegex(run.stdout.rstrip().splitlines()[-1], "pcor refit .* --reference height --reference wind ")
 
+    def test_gps_supports_only_a_model_with_a_small_error(self):
+        """The law is true; only circles determine the level to 0.15 hPa, half the limit."""
+        circles = self.path / "circles.nc"
+        self.done("simulate", SOURCE / "data/scenarios/c130-circles.toml", "-o", circles, "--quiet")
+        for flight, is_supported in ((ONE, False), (circles, True)):
+            result = self.run_tool("compare", flight, "-m", PUBLISHED, "--reference", "wind", "--reference", "height").stdout
+            stated = float(re.search(r"correction of [-+][\d.]+ \+- ([\d.]+) hPa", result).group(1))
+            self.assertEqual(stated < 0.15, is_supported)
+            self.assertEqual("pcor process" in result.rstrip().splitlines()[-1], is_supported, result)
+
+    def test_the_bias_by_wind_has_the_sign_of_the_missing_correction(self):
+        low = self.model(lambda toml: replace(r"a0 = [\d.]+", "a0 = 0.0")(toml), "low.toml")
+        name = "a law with a name that is longer than the first column of the table"
+        again = self.write("again.toml", replace(r'^name = .*$', f'name = "{name}"')(low.read_text()))
+        names = ("-m", low, "-m", again, "--reference", "wind")
+        result = self.json_of("compare", ONE, *names)
+        self.assertGreater(result["by_gps"][0]["missing_hpa"], 2.0)
+        self.assertGreater(result["models"][0]["bias_hpa"], 2.0)
+        rows = re.findall(r"(?m)^model \d +\d.*$", self.run_tool("compare", ONE, *names).stdout)
+        self.assertEqual([len(row) for row in rows], [89, 89], rows)
+
+    def test_a_model_of_another_aircraft_names_both(self):
+        of_gv = SOURCE / "data/models/gv-psf-2014.toml"
+        self.refused("compare", ONE, "-m", of_gv, "--reference", "wind", words=["N677F", "N130AR"])
+
     def test_a_comparison_of_laws_of_one_system_is_no_test(self):
         result = self.compare("--reference", f"static:{PUBLISHED}", model=PUBLISHED)
         self.assertEqual(result["models"][0]["rms_hpa"], 0.0)

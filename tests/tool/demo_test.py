@@ -46,6 +46,18 @@ class Demo(unittest.TestCase):
             self.assertIn(folder, result.stderr)
             self.assertEqual(model.read_text(), "mine")
 
+    def test_a_second_demo_deletes_only_results(self):
+        with tempfile.TemporaryDirectory() as folder:
+            mine, old = Path(folder) / "mine.toml", Path(folder) / "improve.html"
+            for path in (Path(folder) / ".pcor-demo", mine, old):
+                path.touch()
+            result = subprocess.run([SOURCE / "tools/demo", mine, folder], capture_output=True, text=True)
+            self.assertEqual(result.returncode, 2)  # the flight is in the folder of the results
+            self.assertTrue(mine.exists())
+            subprocess.run([SOURCE / "tools/demo", "", folder], env={**os.environ, "PCOR": "true"}, capture_output=True)
+            self.assertTrue(mine.exists())
+            self.assertFalse(old.exists())
+
     @unittest.skipUnless(FLIGHTS, "PCOR_FLIGHTS is not set")
     def test_every_real_flight_is_corrected(self):
         for flight in FLIGHTS:

@@ -362,6 +362,17 @@ class Refusal(TemperatureTest):
         text = self.text_of(flights=(self.good,), model=model)
         self.assertTrue(text.startswith("Warning: heights indicate an error"), text[:200])
 
+    def test_an_error_without_its_effect_in_the_law_names_no_coefficient_of_the_law(self):
+        model = self.law("without", "a2", 1.0, 1.0 / 80.0)
+        toml = model.read_text()
+        lacking = self.write("lacking.toml", re.sub(r'\[\[effect\]\]\nid = "static-qp"\n[^\[]*', "", toml))
+        self.assertNotEqual(lacking.read_text(), toml)
+        result = self.temperature(flights=(self.good,), model=lacking)
+        self.assertTrue(any(each["effect"] == "static-qp" for each in result["law_errors"]))
+        warnings = " ".join(result["warnings"])
+        self.assertIn("static-qp", warnings)
+        self.assertNotIn("a2 of static-qp", warnings)
+
     def test_a_law_that_lacks_an_effect(self):
         """The defect grows with the torque of the engines, which the law does not know."""
         flights = []

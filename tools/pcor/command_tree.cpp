@@ -56,6 +56,7 @@ std::string value_name(const CLI::Option& option) {
   const std::vector<std::string> choices = choices_of(option);
   if (!choices.empty()) return fmt::format("{}", fmt::join(choices, "|"));
   const std::string type = option.get_type_name();
+  if (type.empty()) return option.get_name();
   return type.rfind("FLOAT", 0) == 0 ? "NUMBER" : type;
 }
 

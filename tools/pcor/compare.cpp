@@ -32,18 +32,20 @@ struct CompareArguments {
   std::string table;
 };
 
+constexpr std::size_t name_width = 32;  // first column
+
 void print_row(const std::string& name, const Statistics& s) {
   const auto known = [](double value, int digits) {
     return std::isnan(value) ? std::string("unknown") : fmt::format("{:.{}f}", value, digits);
   };
-  say("{:<32} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, s.samples, s.bias, s.scatter(), s.rms,
-      known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
+  say("{:<{}} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, name_width, s.samples, s.bias,
+      s.scatter(), s.rms, known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
 void print_header(const ModelComparison& model) {
   const bool by_gps = model.is_by_gps();
-  say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
-      by_gps ? fmt::format("residual by {}, hPa", model.reference) : "residual, hPa", "samples",
+  say("{:<{}} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
+      by_gps ? fmt::format("residual by {}, hPa", model.reference) : "residual, hPa", name_width, "samples",
       by_gps ? "GPS bias" : "bias", "scatter", "rms", by_gps ? "max noise" : "noise", "ratio");
 }
 
@@ -96,12 +98,45 @@ void print_parts(const ShownParts& parts, std::size_t more) {
   if (parts.bands.empty() && !rest.empty()) say("{}\n", rest);
 }
 
+/// First cells of the rows of the models: "all" for a single model; numbers if a name is too long.
+class RowNames {
+ public:
+  explicit RowNames(const std::vector<ComparedModel>& models) {
+    const bool is_single = models.size() == 1;
+    are_long_ = !is_single && std::any_of(models.begin(), models.end(), [](const ComparedModel& model) {
+      return model.name.size() > name_width;
+    });
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      rows_.emplace_back(models[m].name, is_single   ? "all"
+                                         : are_long_ ? fmt::format("model {}", m + 1)
+                                                     : models[m].name);
+    }
+  }
+
+  std::string of(const ModelComparison& model) const {
+    const auto found = std::find_if(rows_.begin(), rows_.end(),
+                                    [&model](const auto& row) { return row.first == model.name; });
+    return found == rows_.end() ? model.name : found->second;
+  }
+
+  void print_numbers() const {
+    for (const auto& [name, number] : rows_) {
+      if (are_long_) say("{}: {}\n", number, name);
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> rows_{};  // name of the model, its cell
+  bool are_long_ = false;
+};
+
 /// All samples of each model and reference; of a single model its main parts.
-void print_short(const Comparison& comparison) {
+void print_short(const Comparison& comparison, const RowNames& rows) {
+  rows.print_numbers();
   print_header(comparison.models.front());
   const bool is_single = comparison.models.size() == 1;
   for (const ModelComparison& model : comparison.models) {
-    print_row(is_single ? "all" : model.name, model.all);
+    print_row(rows.of(model), model.all);
     if (!is_single) continue;
     std::size_t of_further = 0;
     for (const Comparison& further : comparison.further) of_further += further.models.front().regimes.size();
@@ -110,7 +145,7 @@ void print_short(const Comparison& comparison) {
   }
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
-      say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa\n", is_single ? "all" : model.name, further.reference,
+      say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa\n", rows.of(model), further.reference,
           model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms);
   }
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
@@ -143,12 +178,12 @@ void print_model(const ModelComparison& model, bool with_name) {
 }
 
 /// Statistics of a further reference: all samples and each regime.
-void print_further(const Comparison& comparison, bool with_names) {
+void print_further(const Comparison& comparison, const RowNames& rows) {
   say("\nresidual = {}, reference minus model\n", comparison.reference);
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
   print_header(comparison.models.front());
   for (const ModelComparison& model : comparison.models) {
-    print_row(with_names ? model.name : "all", model.all);
+    print_row(rows.of(model), model.all);
     for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
   }
 }
@@ -167,8 +202,7 @@ std::vector<std::filesystem::path> residual_files(const CompareArguments& option
   return files;
 }
 
-void print_in_full(const Comparison& comparison, const ChosenReferences& references,
-                   const CompareArguments& options) {
+void print_in_full(const Comparison& comparison, const ChosenReferences& references, const RowNames& rows) {
   print_references(references);
   if (comparison.is_static_pressure) {
     say("residual = static pressure of the reference ({}) minus static pressure of the model\n",
@@ -186,7 +220,8 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
         "hPa, rms {:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
-  for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
+  if (!comparison.further.empty()) rows.print_numbers();
+  for (const Comparison& further : comparison.further) print_further(further, rows);
 }
 
 bool changes_total_pressure(const ModelEffect& effect) {
@@ -209,10 +244,24 @@ std::vector<std::string> undetermined_effects(const ComparedModel& compared) {
   return ids;
 }
 
+/// Mean error of delta-p by GPS, with the name of the model.
+using Levels = std::vector<std::pair<std::string, LevelByGps>>;
+
+/// Null if GPS was not requested.
+const LevelByGps* level_of(const Levels& levels, const std::string& model) {
+  const auto found =
+      std::find_if(levels.begin(), levels.end(), [&model](const auto& each) { return each.first == model; });
+  return found == levels.end() ? nullptr : &found->second;
+}
+
+std::string correction_text(const LevelByGps& level) {
+  return fmt::format("{:+.2f} +- {:.2f} hPa", level.missing, level.standard_error);
+}
+
 /// JSON result of the command.
 struct ComparisonWithGps {
   Comparison comparison{};
-  std::vector<std::pair<std::string, LevelByGps>> levels{};
+  Levels levels{};
 };
 
 template <class Field>
@@ -228,30 +277,37 @@ void describe(const ComparisonWithGps& self, Field& field) {
 }
 
 constexpr double max_level_error = 1.0;  // hPa; above it GPS does not determine the level
+// hPa, error of delta-p of a model that is worth applying: the rms of the published laws
+// (data/models/README.md).
+constexpr double max_model_error = 0.3;
 
-/// Whether the residuals are consistent with the model: its error by GPS is within two standard errors; the
-/// rms of a residual not by GPS is close to the noise. Effects with zero coefficients correct nothing.
-bool is_supported(const ModelComparison& result, const ModelDefinition& model,
-                  const std::vector<std::pair<std::string, LevelByGps>>& levels) {
+/// Evidence about a model, best first.
+enum class Support { supported, undecided, refuted };
+
+/// Whether the residuals are consistent with the model. By GPS the error of its delta-p and two standard
+/// errors are small; the rms of a residual not by GPS is close to the noise. Effects with zero coefficients
+/// correct nothing.
+Support support_of(const ModelComparison& result, const ModelDefinition& model, const Levels& levels) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   const bool is_zero = std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
     return !effect.is_surface() && std::all_of(effect.parameters.begin(), effect.parameters.end(),
                                                [](double value) { return value == 0.0; });
   });
-  if (is_zero && !effects.empty()) return false;
-  const auto found = std::find_if(levels.begin(), levels.end(),
-                                  [&result](const auto& each) { return each.first == result.name; });
-  if (found != levels.end()) {
-    const LevelByGps& level = found->second;
-    const bool is_known = level.standard_error < max_level_error;
-    if (is_known && std::abs(level.missing) > 2.0 * level.standard_error) return false;
-    if (result.is_by_gps()) return is_known;
+  if (is_zero && !effects.empty()) return Support::refuted;
+  const LevelByGps* const level = level_of(levels, result.name);
+  if (level != nullptr) {
+    const double margin = 2.0 * level->standard_error;
+    const bool is_small = std::abs(level->missing) + margin <= max_model_error;
+    const bool is_off = std::abs(level->missing) > margin && level->standard_error < max_level_error;
+    if (is_off && !is_small) return Support::refuted;
+    if (result.is_by_gps()) return is_small ? Support::supported : Support::undecided;
   }
-  return !result.is_by_gps() && result.all.rms_over_noise() < 1.15;
+  if (result.is_by_gps()) return Support::undecided;
+  return result.all.rms_over_noise() < 1.15 ? Support::supported : Support::refuted;
 }
 
 /// Next step: a model is applied or refitted, that with the smallest rms. An rms by GPS contains gusts: there
-/// it is the first supported model, otherwise the first.
+/// it is the first model with the best support.
 std::string next_step(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
                       const CompareArguments& options) {
   const Comparison& comparison = result.comparison;
@@ -259,29 +315,44 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
     return std::find_if(models.begin(), models.end(),
                         [&model](const ComparedModel& each) { return each.name == model.name; });
   };
-  const auto is_good = [&](const ModelComparison& model) {
-    return is_supported(model, definition_of(model)->model, result.levels);
+  const auto support = [&](const ModelComparison& model) {
+    return support_of(model, definition_of(model)->model, result.levels);
+  };
+  const auto rank = [&](const ModelComparison& model) {
+    const LevelByGps* const level = level_of(result.levels, model.name);
+    return std::pair(support(model), level == nullptr ? 0.0 : std::abs(level->missing));
   };
   const bool by_gps = comparison.models.front().is_by_gps();
-  auto best = by_gps ? std::find_if(comparison.models.begin(), comparison.models.end(), is_good)
-                     : std::min_element(comparison.models.begin(), comparison.models.end(),
-                                        [](const ModelComparison& a, const ModelComparison& b) {
-                                          return a.all.rms < b.all.rms;
-                                        });
-  if (best == comparison.models.end()) best = comparison.models.begin();
+  const auto best = std::min_element(comparison.models.begin(), comparison.models.end(),
+                                     [&](const ModelComparison& a, const ModelComparison& b) {
+                                       return by_gps ? rank(a) < rank(b) : a.all.rms < b.all.rms;
+                                     });
   const auto compared = definition_of(*best);
   const std::string& model = options.models[static_cast<std::size_t>(compared - models.begin())];
   std::string which;
   if (comparison.models.size() > 1)
     which = by_gps ? "An rms by GPS does not rank models. " : best->name + " has the smallest rms. ";
   const std::string flights = advised_command_line(options.comparison);
-  if (is_good(*best)) {
+  const LevelByGps* const level = level_of(result.levels, best->name);
+  const bool is_determined = level != nullptr && level->standard_error < max_level_error;
+  const std::string correction =
+      is_determined ? "needs a mean correction of " + correction_text(*level) : std::string();
+  if (support(*best) == Support::supported) {
+    return fmt::format("{}{}. To apply it: {}", which,
+                       by_gps ? fmt::format("By GPS {} {}, which with two standard errors is within {} hPa",
+                                            best->name, correction, max_model_error)
+                              : fmt::format("The residual of {} is close to the noise", best->name),
+                       process_command(options.comparison.flights, compared->model, model,
+                                       options.comparison.timestamp_alignment));
+  }
+  if (support(*best) == Support::undecided) {
     return fmt::format(
-        "{}{}. To apply it: {}", which,
-        by_gps ? fmt::format("By GPS the mean delta-p error of {} is within two standard errors", best->name)
-               : fmt::format("The residual of {} is close to the noise", best->name),
-        process_command(options.comparison.flights, compared->model, model,
-                        options.comparison.timestamp_alignment));
+        "{}GPS cannot tell whether {} is right{}. To test it, give flights with circles or reverse headings "
+        "and --reference wind, or another --reference",
+        which, comparison.models.size() > 1 ? "one of the models" : best->name,
+        is_determined ? fmt::format(": {} {}, which with two standard errors exceeds {} hPa", best->name,
+                                    correction, max_model_error)
+                      : "");
   }
   if (by_gps && compared->model.model.effects.empty()) {
     return fmt::format(
@@ -314,10 +385,11 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
 void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
            const ChosenReferences& references, const CompareArguments& options) {
   const Comparison& comparison = result.comparison;
+  const RowNames rows(models);
   if (is_verbose())
-    print_in_full(comparison, references, options);
+    print_in_full(comparison, references, rows);
   else
-    print_short(comparison);
+    print_short(comparison, rows);
   say_notes(comparison.notes);
   std::vector<std::string> written;
   for (const std::filesystem::path& file : residual_files(options)) written.push_back(file.string());
@@ -373,16 +445,45 @@ void add_levels(const FlightSet& flights, const std::vector<ComparedModel>& mode
   }
 }
 
+void add_notes_on_gps(const ChosenReferences& references, bool separates_atmosphere, Comparison& comparison) {
+  const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
+                                    [](const auto& reference) { return reference->name() == "wind"; });
+  if (has_wind) {
+    comparison.notes.emplace_back(separates_atmosphere
+                                      ? "rms and max noise by wind contain gusts and drift; the GPS bias "
+                                        "does not if the level is determined, and may exceed the rms"
+                                      : "residuals by wind contain gusts and the drift of the wind; "
+                                        "--reference wind separates them from the bias");
+  }
+  double largest = 0.0;
+  for (const ModelComparison& model : comparison.models) {
+    // Heights alone hardly determine the level.
+    if (model.reference == "height" && model.all.bias_error > model.all.rms)
+      largest = std::max(largest, model.all.bias_error);
+  }
+  if (largest >= max_level_error) {
+    comparison.notes.emplace_back(
+        fmt::format("heights do not determine the level (standard error {:.2f} hPa): the bias by height is a "
+                    "mean residual, not an error of delta-p",
+                    largest));
+  } else if (largest > 0.0) {
+    comparison.notes.emplace_back(
+        fmt::format("biases by height have a common standard error of {:.2f} hPa", largest));
+  }
+}
+
+/// First lines: the mean correction of each model, and the sign of what follows.
 void print_levels(const ComparisonWithGps& result) {
   for (const auto& [name, level] : result.levels) {
     if (level.standard_error < max_level_error)
-      say("{}: by GPS delta-p needs a mean correction of {:+.2f} +- {:.2f} hPa\n", name, level.missing,
-          level.standard_error);
+      say("{}: by GPS delta-p needs a mean correction of {}\n", name, correction_text(level));
     else
       say("{}: GPS does not determine the mean delta-p error on these flights; it requires circles or "
           "reverse headings with --reference wind\n",
           name);
   }
+  if (!result.levels.empty())
+    say("A positive correction, or GPS bias by wind: delta-p of the model is too small.\n");
 }
 
 std::string history_of(const CompareArguments& options) {
@@ -422,22 +523,7 @@ void run(const CompareArguments& options) {
     comparison = compare(flights, models, compare_options);
   }
   add_levels(flights, models, options, result);
-  const bool has_wind = std::any_of(references.used.begin(), references.used.end(),
-                                    [](const auto& reference) { return reference->name() == "wind"; });
-  if (has_wind) {
-    comparison.notes.emplace_back(compare_options.separates_atmosphere
-                                      ? "rms and max noise by wind contain gusts and drift; the GPS bias "
-                                        "does not if the level is determined, and may exceed the rms"
-                                      : "residuals by wind contain gusts and the drift of the wind; "
-                                        "--reference wind separates them from "
-                                        "the bias");
-  }
-  for (const ModelComparison& model : comparison.models) {
-    // Heights alone hardly determine the level.
-    if (model.reference != "height" || !(model.all.bias_error > model.all.rms)) continue;
-    comparison.notes.emplace_back(
-        fmt::format("biases by height have a common standard error of {:.2f} hPa", model.all.bias_error));
-  }
+  add_notes_on_gps(references, compare_options.separates_atmosphere, comparison);
   if (!is_speaker()) return;
   OutputTransaction together;
   for (std::size_t i = 0; i < residuals.size(); ++i)

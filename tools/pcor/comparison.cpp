@@ -65,7 +65,7 @@ void leave_out_unreadable(std::vector<std::string>& flights) {
 }  // namespace
 
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
-  command.add_option("flights", options.flights, "the flights, netCDF files")->required()->type_name("IN.nc");
+  command.add_option("FLIGHT.nc", options.flights, "the flights, netCDF files")->required()->type_name("");
   add_list_option(command, "--exclude", options.exclude, "exclude a flight regime, e.g. turn or cloud")
       ->type_name("REGIME");
   command

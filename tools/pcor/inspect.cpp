@@ -412,7 +412,7 @@ std::function<void()> add_inspect(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "inspect",
       "Show the content of a flight: aircraft, rates, roles of its variables, missing inputs, manoeuvres");
-  command->add_option("flights", options->flights, "flights, netCDF files")->required()->type_name("IN.nc");
+  command->add_option("FLIGHT.nc", options->flights, "flights, netCDF files")->required()->type_name("");
   command
       ->add_option("--write-model", options->model,
                    "write a model of the first flight to FILE.toml, with its roles and terms for a refit")

@@ -352,7 +352,7 @@ std::function<void()> add_process(CLI::App& program) {
   auto options = std::make_shared<ProcessArguments>();
   CLI::App* command =
       program.add_subcommand("process", "Correct flights: run every sample through the real-time loop");
-  command->add_option("input", options->inputs, "the flights, netCDF files")->required()->type_name("IN.nc");
+  command->add_option("FLIGHT.nc", options->inputs, "the flights, netCDF files")->required()->type_name("");
   CLI::Option* const model =
       command->add_option("-m,--model", options->model, "the model of the pressure system")
           ->type_name("MODEL.toml");

@@ -87,9 +87,9 @@ RefitOptions refit_options(const RefitArguments& options, const FlightSet& holdo
   return refit;
 }
 
-void print_flights(const std::vector<FlightFit>& flights) {
+void print_flights(const std::vector<FlightFit>& flights, const char* noise) {
   say("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
-      "rms after", "bias after", "scatter", "noise");
+      "rms after", "bias after", "scatter", noise);
   for (const FlightFit& flight : flights) {
     say("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
         flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples, flight.before.rms,
@@ -103,7 +103,8 @@ void print_further(const std::vector<FlightFit>& further) {
     const auto end = std::find_if(
         first, further.end(), [&](const FlightFit& flight) { return flight.reference != first->reference; });
     say("\nreference {}", first->reference);
-    print_flights({first, end});
+    const bool by_gps = first->reference == "wind" || first->reference == "height";
+    print_flights({first, end}, by_gps ? "max noise" : "noise");
     first = end;
   }
 }
@@ -161,8 +162,8 @@ std::string outliers_text(const RefitResult& result, const RefitArguments& optio
 /// The residual, warnings and the fitted coefficients.
 void print_short(const RefitResult& result, const RefitArguments& options) {
   constexpr std::size_t max_rows = 6;
-  say("rms {:.3f} hPa{}; noise {:.3f} hPa; {} samples, {}\n", result.rms, before_text(result.rms_before),
-      result.noise_rms, result.samples, outliers_text(result, options));
+  say("rms {:.3f} hPa{}; {} {:.3f} hPa; {} samples, {}\n", result.rms, before_text(result.rms_before),
+      result.noise_label(), result.noise_rms, result.samples, outliers_text(result, options));
   print_fit_summary(result);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   print_coefficients(result, max_rows);
@@ -184,8 +185,8 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
   print_flaps_out(result.flaps_out, "the fit");
   say("\n");
   print_coefficients(result, result.parameters.size());
-  say("\nrms {:.3f} hPa{}; noise {:.3f} hPa; {}\n", result.rms, before_text(result.rms_before),
-      result.noise_rms, outliers_text(result, options));
+  say("\nrms {:.3f} hPa{}; {} {:.3f} hPa; {}\n", result.rms, before_text(result.rms_before),
+      result.noise_label(), result.noise_rms, outliers_text(result, options));
   say("rms of residual / static pressure {:.5f}; standard deviation by the median of absolute values {:.3f} "
       "hPa\n",
       result.rms_over_pressure, result.bulk_rms);
@@ -212,7 +213,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
       say("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
     }
   }
-  print_flights(result.flights);
+  print_flights(result.flights, result.noise_label());
   print_further(result.further);
 }
 

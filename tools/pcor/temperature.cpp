@@ -61,9 +61,9 @@ void print_parts(const TemperatureResult& result) {
 
 void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
-    say("According to the heights, {} of {} is too low by {}, a range of {:.2f} hPa over the flights; the "
+    say("According to the heights, delta-p lacks {} in {} of {}, a range of {:.2f} hPa over the flights; the "
         "error was subtracted.\n",
-        error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
+        with_error(error.change, error.standard_error), error.parameter, error.effect, error.range);
   if (result.humidity_change != 0.0)
     say("The heights change the vapour pressure by {} of its value.\n",
         with_error(result.humidity_change, result.humidity_error));

@@ -175,7 +175,6 @@ void finish_text() {
 
 void say_notes(Notes notes, std::size_t max_notes) {
   constexpr std::size_t max_width = 136;
-  constexpr std::size_t min_beginning = 100;
   std::stable_partition(notes.begin(), notes.end(),
                         [](const Note& note) { return note.severity == Severity::warning; });
   if (is_verbose()) {
@@ -185,23 +184,16 @@ void say_notes(Notes notes, std::size_t max_notes) {
   }
   bool is_cut = false;  // a note before
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
+    // A note begins with what is wrong or what to do: complete clauses stay if the first one fits.
     const std::string note = format_note(notes[i]);
-    // The last part, which is the action, stays if it is short; the beginning states what is wrong.
-    const std::size_t last = note.rfind("; ");
-    const std::size_t action = last == none ? 0 : note.size() - last;
-    const bool keeps_action =
-        action > 0 && bytes_of(note, max_width) < note.size() && action <= 2 * max_width / 3;
-    const std::size_t beginning = std::max(max_width - std::min(action, max_width), min_beginning);
-    const std::size_t width = !keeps_action ? max_width : last <= beginning ? note.size() : beginning;
-    std::string_view rest = note;
-    const std::string_view line = take_line(rest, width, false);
-    const std::string ending = rest.empty() ? "."
-                               : keeps_action
-                                   ? " ..." + note.substr(last) + (is_cut ? "" : " (in full with --verbose)")
-                               : is_cut ? " ..."
-                                        : " ... (in full with --verbose)";
-    say("note {}: {}{}\n", i + 1, line, ending);
-    is_cut = is_cut || !rest.empty();
+    const bool is_short = bytes_of(note, max_width) == note.size();
+    std::string_view line = note;
+    if (!is_short) {
+      const std::size_t clauses = note.rfind("; ", bytes_of(note, max_width));
+      line = clauses == none ? take_line(line, max_width, false) : line.substr(0, clauses);
+    }
+    say("note {}: {}{}\n", i + 1, line, is_short ? "." : is_cut ? " ..." : " ... (in full with --verbose)");
+    is_cut = is_cut || !is_short;
   }
   if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
 }

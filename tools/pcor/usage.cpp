@@ -73,9 +73,7 @@ std::string usage_message(const CLI::App& program, const std::string& message,
     return with_hint(fmt::format("unknown option '{}'", unknown.front()),
                      did_you_mean(unknown.front(), known), help);
   }
-  const bool lacks_flight = message == "flights is required" || message == "input is required";
-  return fmt::format("pcor: {}; to list the options: {}",
-                     lacks_flight ? "no flight; give at least one netCDF file, FLIGHT.nc" : message, help);
+  return fmt::format("pcor: {}; to list the options: {}", message, help);
 }
 
 std::string flights_behind_holdout(const CLI::App& program, const std::vector<std::string>& words) {

@@ -72,8 +72,8 @@ struct ModelComparison {
   LineFit static_pressure{};
   double autocorrelation_time = 1.0;
   /// Standard deviation of the common bias due to the calibration of the reference and of the thermometer,
-  /// hPa, in addition to `Statistics::bias_error`: typical sizes (`ParameterInfo::doubt`), or `[uncertainty]`
-  /// of the models. Zero for references with a window (wind, height).
+  /// hPa, in addition to `Statistics::bias_error`: typical sizes (`ParameterInfo::calibration_uncertainty`),
+  /// or `[uncertainty]` of the models. Zero for references with a window (wind, height).
   double reference_error = 0.0;
   std::vector<PartStatistics> regimes;  ///< regimes that occur, in the order of `Regime`
   std::vector<PartStatistics> bands;    ///< altitude, Mach, angle of attack, sideslip

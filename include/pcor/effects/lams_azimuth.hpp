@@ -13,7 +13,7 @@ struct LamsAzimuth : Constant {
     info.location = EffectLocation::beam_azimuth;
     info.formula = "dtheta2";
     info.parameters[0] = {"dtheta2", "deg", 0.0, -45.0, 45.0, 0.5};
-    info.parameters[0].doubt = 0.3;
+    info.parameters[0].calibration_uncertainty = 0.3;
     info.size = "survey 0.02 to 0.2 deg: 0.15 m/s for 0.5 deg at 4 deg of sideslip";
     info.confounders = "static-beta-odd, roll-static";
     info.manoeuvre = "yaw manoeuvre with a second static pair";

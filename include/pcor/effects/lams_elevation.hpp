@@ -13,7 +13,7 @@ struct LamsElevation : Constant {
     info.location = EffectLocation::beam_elevation;
     info.formula = "dtheta1";
     info.parameters[0] = {"dtheta1", "deg", 0.0, -45.0, 45.0, 0.5};
-    info.parameters[0].doubt = 0.3;
+    info.parameters[0].calibration_uncertainty = 0.3;
     info.size =
         "pod pitch 1 deg (C-130), 3.5 deg (GV); survey 0.02 to 0.2 deg: 0.12 hPa for 0.5 deg at 6 deg";
     info.confounders = "static-alpha, static-constant";

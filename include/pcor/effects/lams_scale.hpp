@@ -13,7 +13,7 @@ struct LamsScale : MinusProportional<Quantity::lams_airspeed> {
     info.location = EffectLocation::beam_speed;
     info.formula = "-scale * lams_airspeed";
     info.parameters[0] = {"scale", "1", 0.0, -0.5, 0.5, 0.001};
-    info.parameters[0].doubt = 0.002;
+    info.parameters[0].calibration_uncertainty = 0.002;
     info.needs = {Quantity::lams_airspeed, Quantity::count, Quantity::count, Quantity::count};
     info.size =
         "calibration within 0.1 m/s; index of refraction 0.024 m/s at 700 hPa; the constant part of the flow "

@@ -13,7 +13,7 @@ struct PsfdBias : MinusConstant {
     info.location = EffectLocation::static_transducer;
     info.formula = "-offset";
     info.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.1};
-    info.parameters[0].doubt = 0.1;
+    info.parameters[0].calibration_uncertainty = 0.1;
     info.size = "Paroscientific 0.1 hPa; the laser sees 7 to 35 % of it";
     info.confounders = "static-constant, qcf-zero";
     info.manoeuvre =

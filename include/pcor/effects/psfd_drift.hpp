@@ -13,7 +13,7 @@ struct PsfdDrift : MinusDrift {
     info.location = EffectLocation::static_transducer;
     info.formula = "-per_hour * time / 3600";
     info.parameters[0] = {"per_hour", "hPa/h", 0.0, -20.0, 20.0, 0.03};
-    info.parameters[0].doubt = 0.03;
+    info.parameters[0].calibration_uncertainty = 0.03;
     info.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     info.size = "estimated 0.03 hPa/h: a third of the bias of 0.1 hPa (Paroscientific) within an hour";
     info.confounders = "time-drift, qcf-drift, psfd-thermal";

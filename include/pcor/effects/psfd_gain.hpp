@@ -13,7 +13,7 @@ struct PsfdGain : MinusProportional<Quantity::static_pressure> {
     info.location = EffectLocation::static_transducer;
     info.formula = "-gain * static_pressure";
     info.parameters[0] = {"gain", "1", 0.0, -0.5, 0.5, 0.0001};
-    info.parameters[0].doubt = 0.0001;
+    info.parameters[0].calibration_uncertainty = 0.0001;
     info.needs = {Quantity::static_pressure, Quantity::count, Quantity::count, Quantity::count};
     info.size = "0.1 hPa at 1000 hPa (Paroscientific): the laser sees 7 to 35 % of it";
     info.confounders = "psfd-bias, static-constant, qcf-gain";

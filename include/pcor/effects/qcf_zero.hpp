@@ -13,7 +13,7 @@ struct QcfZero : MinusConstant {
     info.location = EffectLocation::dynamic_transducer;
     info.formula = "-offset";
     info.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.3};
-    info.parameters[0].doubt = 0.3;
+    info.parameters[0].calibration_uncertainty = 0.3;
     info.size = "0.34 hPa typical, 0.68 at most (Honeywell PPT); Cooper (2012) has 0.05";
     info.confounders = "static-constant, static-leak, temp-deice-heat, psfd-bias, qcf-gain";
     info.manoeuvre = "zero on the ramp before taxi; a second static and pitot pair";

@@ -13,7 +13,7 @@ struct RecoveryFactorError : Constant {
     info.location = EffectLocation::recovery;
     info.formula = "da";
     info.parameters[0] = {"da", "1", 0.0, -0.2, 0.2, 0.01};
-    info.parameters[0].doubt = 0.005;
+    info.parameters[0].calibration_uncertainty = 0.005;
     info.size = "0.01 changes delta-p from LAMS by -0.017 hPa (C-130) to -0.11 hPa (GV)";
     info.confounders = "temp-offset, static-qp, static-mach2";
     info.manoeuvre = "speed run, both branches, at constant temperature";

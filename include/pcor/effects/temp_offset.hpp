@@ -15,7 +15,7 @@ struct TempOffset {
     info.formula = "-(offset + slope * (recovery_temperature - 273.15))";
     info.parameters[0] = {"offset", "K", 0.0, -50.0, 50.0, 0.5};
     info.parameters[1] = {"slope", "1", 0.0, -0.5, 0.5, 0.005};
-    info.parameters[0].doubt = 0.3;
+    info.parameters[0].calibration_uncertainty = 0.3;
     info.needs = {Quantity::recovery_temperature, Quantity::count, Quantity::count, Quantity::count};
     info.size = "0.3 to 0.55 K: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
     info.confounders =

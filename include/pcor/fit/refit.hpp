@@ -48,8 +48,8 @@ struct RefitOptions {
   /// GPS alone, which has a prior.
   std::vector<std::string> added{};
   /// The calibration of the references and of the thermometer is exact. Otherwise its error is part of the
-  /// standard errors: `ParameterInfo::doubt`, or `[uncertainty]` of the model. Stated errors of the law of a
-  /// second system are always included.
+  /// standard errors: `ParameterInfo::calibration_uncertainty`, or `[uncertainty]` of the model. Stated
+  /// errors of the law of a second system are always included.
   bool trust_reference = false;
   /// Global search of the starting point between the bounds, for parameters with a nonlinear residual.
   bool search = false;
@@ -220,6 +220,8 @@ struct RefitResult {
   /// and the stated errors are by the likelihood or by the jackknife: the one with the larger error of
   /// delta-p.
   bool is_by_gps() const { return estimator == refit_estimator_of_gps; }
+  /// Label of `noise_rms`: by GPS an upper limit, as in `ModelComparison::is_by_gps`.
+  const char* noise_label() const { return is_by_gps() ? "max noise" : "noise"; }
   /// Reason for which the model should not be used: the fit is worse than the coefficients of the file, or a
   /// held-out part has a significant bias. Otherwise empty.
   std::string worse{};

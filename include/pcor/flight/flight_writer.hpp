@@ -83,9 +83,6 @@ class FlightWriter {
   FlightWriter(const std::filesystem::path& output, const NewFlight& flight,
                const FileDescription& description);
 
-  FlightWriter(FlightWriter&&) noexcept;
-  FlightWriter& operator=(FlightWriter&&) noexcept;
-
   /// Removes the hidden file if `finish` was not called.
   ~FlightWriter();
 

@@ -96,7 +96,10 @@ struct ParameterInfo {
   /// Standard uncertainty of the calibration of a reference or of the thermometer, in the unit of the
   /// coefficient. Stated errors include it unless the model states another value. Zero: no uncertainty by
   /// default. Sources: `EffectInfo::source` and `size` of the effect.
-  double doubt = 0.0;
+  double calibration_uncertainty = 0.0;
+
+  /// True if the value is within the physical bounds; false for NaN.
+  constexpr bool allows(double value) const { return value >= lower && value <= upper; }
 };
 
 inline constexpr std::size_t parameter_capacity = 3;

@@ -82,8 +82,8 @@ struct Model {
   /// not use has no effect. Not stored in model files.
   std::vector<EffectLocation> additions{};
   LamsMounting lams;
-  RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};
-  bool moist = true;  ///< true: constants of moist air; false: of dry air
+  RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};  ///< default 1, of no real thermometer: 0.95 to 0.99
+  bool moist = true;                              ///< true: constants of moist air; false: of dry air
   RadomeCalibration attack_radome;
   RadomeCalibration sideslip_radome;
   Policy policy;

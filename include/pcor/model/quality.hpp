@@ -52,8 +52,8 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "static pressure below 1 hPa, or outside the plausible range when corrected: nothing is derived"},
     {Quality::impossible_dynamic_pressure, "impossible_dynamic_pressure",
      "zero or below, as on the ground: no Mach number",
-     "dynamic pressure zero or below, as on the ground, or outside the plausible range when corrected: no "
-     "Mach number, nothing derived from it"},
+     "dynamic pressure zero or below, as on the ground, above that of Mach 1, or outside the plausible range "
+     "when corrected: no Mach number, nothing derived from it"},
     {Quality::effect_input_missing, "effect_input_missing", "an input of an effect is missing: no delta-p",
      "an input of the model's effects is missing: no delta-p, or no pressure to correct"},
     {Quality::impossible_radome_pressure, "impossible_radome_pressure",
@@ -66,7 +66,9 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::humidity_limited, "humidity_limited", "vapour pressure set to zero or to saturation",
      "vapour pressure below zero or above saturation: set to the limit"},
     {Quality::lams_missing, "lams_missing", "no valid airspeed from LAMS",
-     "no valid airspeed from LAMS, or its result is outside the plausible range"},
+     "no valid airspeed from LAMS, or its result is outside the plausible range, or LAMS is to correct and "
+     "its "
+     "delta-p is three tenths of the dynamic pressure from that of the model"},
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure",
      "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law",
@@ -74,7 +76,8 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::outside_domain, "outside_domain", "outside the domain of the law, or flaps extended",
      "an input lies outside the domain of the law, or the flaps are extended: extrapolated"},
     {Quality::after_gap, "after_gap", "near a gap: too few neighbours for rates of change",
-     "near a gap: effects of rates of change have too few neighbours"},
+     "near a gap: effects of rates of change have too few neighbours; in real time also the first sample "
+     "after a gap"},
     {Quality::corrected_with_lams, "corrected_with_lams", "corrected with LAMS, not with the model",
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
@@ -88,7 +91,8 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::sensor_frozen, "sensor_frozen", "a sensor is frozen: dependent results are wrong",
      "a sensor is frozen, constant for much longer than its noise permits: dependent results are wrong"},
     {Quality::uneven_samples, "uneven_samples", "uneven intervals: effects of rates of change are wrong",
-     "sample intervals differ from those of the rate: effects of rates of change are wrong"},
+     "sample intervals differ from those of the rate, or the time does not increase: effects of rates of "
+     "change are wrong"},
     {Quality::awaiting_later_samples, "awaiting_later_samples",
      "no results yet: the filter needs later samples",
      "no results yet after the start or a gap in real time: the filter needs later samples"},

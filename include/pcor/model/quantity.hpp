@@ -189,7 +189,7 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
      Quantity::corrected_dynamic_pressure, 0.0, 2000.0},
     {"humidity", "1", "water vapour pressure over static pressure, e/p, not above saturation",
      Quantity::humidity},
-    {"corrected_mach", "1", "Mach number from the corrected pressures", Quantity::corrected_mach, 0.0, 3.0},
+    {"corrected_mach", "1", "Mach number from the corrected pressures", Quantity::corrected_mach, 0.0, 1.0},
     {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures", Quantity::corrected_airspeed,
      0.0, 1500.0},
     {"lams_temperature", "K", "ambient temperature from LAMS without a thermometer",
@@ -240,13 +240,16 @@ struct Rate {
   Quantity rate;
 };
 
-/// All such rates.
+/// All such rates of recorded quantities. `airspeed_rate` is that of a result (`LookAhead`).
 inline constexpr std::array<Rate, 4> rates{{
     {Quantity::static_pressure, Quantity::static_pressure_rate},
     {Quantity::dynamic_pressure, Quantity::dynamic_pressure_rate},
     {Quantity::recovery_temperature, Quantity::recovery_temperature_rate},
     {Quantity::ambient_temperature, Quantity::ambient_temperature_rate},
 }};
+
+/// Upper limit of retracted flaps, percent.
+inline constexpr double flaps_in = 5.0;
 
 constexpr bool is_role(Quantity quantity) { return index(quantity) < role_count; }
 

@@ -7,16 +7,19 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/model/quantity.hpp>
+#include <pcor/model/model.hpp>
 
 namespace pcor {
 
 /// Standard uncertainties (GUM 2.3.1) of a model and its sensors, one standard deviation each. Contributions
 /// that are not stated are zero and therefore not included in results.
 struct ModelUncertainty {
-  /// Covariance of the parameters of all effects, in the order of the model, row by row, in their units.
-  /// Constant from sample to sample (systematic component). Empty if not stated.
+  /// Covariance of the parameters of all effects, in the order of the model, then of those of `calibration`,
+  /// row by row, in their units. Constant from sample to sample (systematic component). Empty if not stated.
   std::vector<double> covariance{};
+  /// Effects of unknown calibration errors of sensors that the model does not correct, with coefficients that
+  /// do not change the results.
+  std::vector<ModelEffect> calibration{};
   /// Standard uncertainty of one sample of each role, in its unit; independent in every sample (random
   /// component).
   std::array<double, role_count> random{};
@@ -37,11 +40,13 @@ struct ModelUncertainty {
   ModelUncertainty systematic_part() const {
     ModelUncertainty part;
     part.covariance = covariance;
+    part.calibration = calibration;
     return part;
   }
   ModelUncertainty random_part() const {
     ModelUncertainty part = *this;
     part.covariance.clear();
+    part.calibration.clear();
     return part;
   }
 };

@@ -63,8 +63,9 @@ struct StatedUncertainty {
   std::map<Quantity, double> roles{};
   std::optional<double> static_defect{};        ///< hPa
   std::optional<double> static_defect_ratio{};  ///< fraction of the static pressure
-  /// Standard uncertainties of sensors, replacing `ParameterInfo::doubt`, by the corresponding coefficients,
-  /// for example "lams-scale.scale". Zero for a sensor that is assumed to be exact.
+  /// Standard uncertainties of sensors, replacing `ParameterInfo::calibration_uncertainty`, by the
+  /// corresponding coefficients, for example "lams-scale.scale". Zero for a sensor that is assumed to be
+  /// exact.
   std::map<std::string, double> sensors{};
 };
 
@@ -115,7 +116,10 @@ struct ModelDefinition {
 };
 
 /// Uncertainty of a model for a loop: covariance of the file, standard errors of parameters that are not in
-/// the covariance (independent of all others), and standard uncertainties of single samples.
+/// the covariance (independent of all others), and standard uncertainties of single samples. If the file
+/// states any of these, also the calibration of a thermometer of the recovery temperature, with the default
+/// 0.3 K and 0.005 (recovery factor) unless the file states it: the uncertainty of the temperature would
+/// otherwise be far too small.
 ModelUncertainty uncertainty_of(const ModelDefinition& file);
 
 /// Whether the model contains the effect `id`.

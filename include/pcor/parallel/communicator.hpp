@@ -18,7 +18,8 @@ struct Message;
 /// each processes some of the flights, and results are gathered on all ranks: every rank obtains the same
 /// result, equal to that of a serial run bit by bit on identical processors.
 ///
-/// Derived classes implement the exchange of bytes: `ForkCommunicator`, and `MpiCommunicator` of `pcor_mpi`.
+/// This class is a group of one. Derived classes implement the exchange of bytes: `ForkCommunicator`, and
+/// `MpiCommunicator` of `pcor_mpi`.
 /// All ranks call the same functions in the same order, each from one thread.
 class Communicator {
  public:
@@ -27,8 +28,9 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
-  virtual std::size_t rank() const = 0;  ///< rank of this process, from 0
-  virtual std::size_t size() const = 0;  ///< number of ranks, at least 1
+  // A group of several ranks overrides `rank`, `size` and `exchange`, all three.
+  virtual std::size_t rank() const { return 0; }  ///< rank of this process, from 0
+  virtual std::size_t size() const { return 1; }  ///< number of ranks, at least 1
 
   /// Gathers the values of all ranks on every rank, in the order of ranks: one collective exchange.
   ///
@@ -49,7 +51,7 @@ class Communicator {
 
  private:
   /// Gives each rank the bytes of all, in the order of ranks.
-  virtual std::vector<std::string> exchange(const std::string& own) = 0;
+  virtual std::vector<std::string> exchange(const std::string& own) { return {own}; }
 
   std::vector<internal::Message> talk(const internal::Message& own);
 

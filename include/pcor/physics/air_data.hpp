@@ -24,13 +24,17 @@ S mach_number_from_heating(const S& heating, const MoistAir<S>& air) {
   return sqrt(air.degrees_of_freedom * heating);
 }
 
+/// q/p of dry air at Mach 1, where the equations of compressible flow end: 1.2^3.5 - 1.
+inline constexpr double max_dynamic_ratio = 0.892929;
+
 /// Mach number from static pressure `p` and dynamic pressure `q` (same unit):
 ///
 ///     M = { (2 c_v/R_a) [ ((p+q)/p)^(R_a/c_p) - 1 ] }^(1/2)
 ///
-/// Result: 1, zero or above. Domain: p > 0, q >= 0; anything else gives NaN. The temperature is not needed.
-/// Accuracy: 1e-14 relative at q/p = 0.1, 1e-10 at q/p = 1e-5. Source: memo eq. 7 (2 c_v/R_a, see its
-/// misprint).
+/// Result: 1, zero or above. Domain: p > 0, q >= 0; anything else gives NaN. Above Mach 1
+/// (`max_dynamic_ratio`), which is not checked, a pitot tube is behind a shock and M is too large. The
+/// temperature is not needed. Accuracy for `double`: 1e-15 relative below Mach 0.847; for packs and dual
+/// numbers 1e-14 at q/p = 0.1, 1e-10 at q/p = 1e-5. Source: memo eq. 7 (2 c_v/R_a, see its misprint).
 template <class S>
 S mach_number(const S& p, const S& q, const MoistAir<S>& air) {
   return mach_number_from_heating(dynamic_heating(p, q, air), air);
@@ -77,8 +81,8 @@ S speed_of_sound(const S& temperature, const MoistAir<S>& air) {
   return sqrt(air.heat_capacity_ratio * air.gas_constant * temperature);
 }
 
-/// True airspeed, m/s: v = M (gamma R_a T)^(1/2), with the ambient `temperature` T in K. Domain: T >= 0 K;
-/// anything else, and NaN in an argument, gives NaN. Source: memo before eq. 6.
+/// True airspeed, m/s: v = M (gamma R_a T)^(1/2), with the ambient `temperature` T in K. Domain: M >= 0, not
+/// checked; T >= 0 K, anything else, and NaN in an argument, gives NaN. Source: memo before eq. 6.
 template <class S>
 S true_airspeed(const S& mach, const S& temperature, const MoistAir<S>& air) {
   return mach * speed_of_sound(temperature, air);

@@ -21,12 +21,14 @@ struct RadomeCalibration {
   /// Flow angle, deg. NaN if the ratio or the Mach number is NaN, also with a zero `slope_mach`.
   template <class S>
   S operator()(const S& ratio, const S& mach) const {
+    require_scalar<S>();
     return S(offset) + ratio * (S(slope) + S(slope_mach) * mach);
   }
 
   /// Flow angle, deg, without the term of the Mach number. NaN if the ratio is NaN.
   template <class S>
   S operator()(const S& ratio) const {
+    require_scalar<S>();
     return S(offset) + ratio * S(slope);
   }
 };

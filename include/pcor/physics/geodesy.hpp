@@ -33,6 +33,7 @@ inline constexpr double earth_rotation_rate = 7.292115e-5;
 /// WGS 84, NIMA TR8350.2 eq. 4-1.
 template <class S>
 S normal_gravity(const S& latitude) {
+  require_scalar<S>();
   using std::sin;
   using std::sqrt;
   const S sine = sin(S(latitude * S(constants::radians_per_degree)));
@@ -44,6 +45,7 @@ S normal_gravity(const S& latitude) {
 /// (1 + f + m - 2 f sin^2)/a, 1/m: how fast gravity falls with height, half the relative rate at the ground.
 template <class S>
 S gravity_decrease(const S& latitude) {
+  require_scalar<S>();
   using std::sin;
   const S sine = sin(S(latitude * S(constants::radians_per_degree)));
   const S square = sine * sine;
@@ -61,6 +63,7 @@ S gravity_decrease(const S& latitude) {
 /// Source: NIMA TR8350.2 eq. 4-3.
 template <class S>
 S gravity(const S& latitude, const S& height) {
+  require_scalar<S>();
   const S across = height * S(1.0 / constants::ellipsoid_semi_major_axis);
   return normal_gravity(latitude) *
          (S(1.0) - S(2.0) * gravity_decrease(latitude) * height + S(3.0) * across * across);
@@ -72,6 +75,7 @@ S gravity(const S& latitude, const S& height) {
 /// WMO-No. 8, part I, chapter 12.
 template <class S>
 S geopotential_height(const S& latitude, const S& height) {
+  require_scalar<S>();
   const S across = height * S(1.0 / constants::ellipsoid_semi_major_axis);
   return normal_gravity(latitude) * S(1.0 / constants::standard_gravity) * height *
          (S(1.0) - gravity_decrease(latitude) * height + across * across);
@@ -81,6 +85,7 @@ S geopotential_height(const S& latitude, const S& height) {
 /// `geopotential_height`, to 1e-6 m between -1 and 30 km.
 template <class S>
 S geometric_height(const S& latitude, const S& height) {
+  require_scalar<S>();
   S geometric = height;
   for (int step = 0; step < 3; ++step) {
     const S excess = geopotential_height(latitude, geometric) - height;
@@ -92,6 +97,7 @@ S geometric_height(const S& latitude, const S& height) {
 /// Coriolis parameter, 1/s: 2 Omega sin(latitude), latitude in degrees. Negative in the south.
 template <class S>
 S coriolis_parameter(const S& latitude) {
+  require_scalar<S>();
   using std::sin;
   return S(2.0 * constants::earth_rotation_rate) * sin(S(latitude * S(constants::radians_per_degree)));
 }

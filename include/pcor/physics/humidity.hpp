@@ -14,6 +14,7 @@ namespace pcor {
 /// Source: Murphy and Koop, Q. J. R. Meteorol. Soc. 131, 1539-1565 (2005), eq. 10.
 template <class S>
 S vapor_pressure_over_water(const S& temperature) {
+  require_scalar<S>();
   using std::exp;
   using std::log;
   const S logarithm = log(temperature);
@@ -34,6 +35,7 @@ S vapor_pressure_over_water(const S& temperature) {
 /// gives NaN.
 template <class S>
 S vapor_pressure_below_saturation(const S& temperature) {
+  require_scalar<S>();
   const S x = (temperature - S(257.5)) * S(1.0 / 67.5);
   const S square = x * x;
   const S root =
@@ -50,6 +52,7 @@ S vapor_pressure_below_saturation(const S& temperature) {
 /// Source: Murphy and Koop (2005), eq. 7.
 template <class S>
 S vapor_pressure_over_ice(const S& temperature) {
+  require_scalar<S>();
   using std::exp;
   using std::log;
   return S(0.01) * exp(S(9.550426) - S(5723.265) / temperature + S(3.53068) * log(temperature) -
@@ -60,6 +63,7 @@ S vapor_pressure_over_ice(const S& temperature) {
 /// otherwise over water. Domain and accuracy are those of the two laws. Source: Murphy and Koop (2005).
 template <class S>
 S saturation_vapor_pressure(const S& temperature) {
+  require_scalar<S>();
   return select(temperature < S(constants::ice_point), vapor_pressure_over_ice(temperature),
                 vapor_pressure_over_water(temperature));
 }
@@ -71,6 +75,7 @@ S saturation_vapor_pressure(const S& temperature) {
 /// Source: Murphy and Koop (2005), appendix.
 template <class S>
 S enhancement_factor(const S& temperature, const S& pressure) {
+  require_scalar<S>();
   return S(1.0) + S(1e-5) * pressure * (S(4.923) + temperature * (S(-0.0325) + S(5.84e-5) * temperature));
 }
 
@@ -78,6 +83,7 @@ S enhancement_factor(const S& temperature, const S& pressure) {
 /// which is the convention of NCAR's DPXC. Accuracy of `vapor_pressure_over_water`; NaN gives NaN.
 template <class S>
 S vapor_pressure_from_dew_point(const S& dew_point, const S& pressure) {
+  require_scalar<S>();
   return vapor_pressure_over_water(dew_point) * enhancement_factor(dew_point, pressure);
 }
 
@@ -86,6 +92,7 @@ S vapor_pressure_from_dew_point(const S& dew_point, const S& pressure) {
 /// NaN gives NaN.
 template <class S>
 S vapor_pressure_from_frost_point(const S& frost_point, const S& pressure) {
+  require_scalar<S>();
   return saturation_vapor_pressure(frost_point) * enhancement_factor(frost_point, pressure);
 }
 
@@ -93,6 +100,7 @@ S vapor_pressure_from_frost_point(const S& frost_point, const S& pressure) {
 /// not checked; NaN gives NaN. Source: memo before eq. 13.
 template <class S>
 S mixing_ratio(const S& vapor_pressure, const S& pressure) {
+  require_scalar<S>();
   return S(constants::molar_mass_ratio) * vapor_pressure / (pressure - vapor_pressure);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <pcor/physics/constants.hpp>
-#include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/scalar.hpp>
 
 namespace pcor {
@@ -17,6 +16,7 @@ namespace pcor {
 /// short by 2 m over one scale height in 2000 steps.
 template <class S>
 S hydrostatic_step(const S& pressure_before, const S& pressure, const S& gas_constant) {
+  require_scalar<S>();
   using std::log;
   return -(gas_constant * S(1.0 / constants::standard_gravity)) * log(S(pressure / pressure_before));
 }

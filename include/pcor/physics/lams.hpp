@@ -18,14 +18,20 @@ namespace pcor {
 /// unlike. Source: memo, "Effect of LAMS orientation".
 template <class S>
 S beam_cosine(const S& elevation, const S& azimuth, const S& attack, const S& sideslip) {
+  require_scalar<S>();
   using std::cos;
   const S radians = S(constants::radians_per_degree);
   return cos(radians * (elevation + attack)) * cos(radians * (azimuth - sideslip));
 }
 
+/// Relative difference from the airspeed by the pressures beyond which a laser has lost its lock: a static
+/// defect of three tenths of the dynamic pressure, larger than that of any port.
+inline constexpr double max_lams_departure = 0.15;
+
 /// Airspeed, m/s, from the speed along the beam: v = v_L / cos(theta).
 template <class S>
 S airspeed_from_beam(const S& beam_speed, const S& cosine) {
+  require_scalar<S>();
   return beam_speed / cosine;
 }
 
@@ -37,6 +43,7 @@ S airspeed_from_beam(const S& beam_speed, const S& cosine) {
 /// pressure; their sum, the total pressure, stays. Source: memo eq. 9-11 (eq. 9 lost a minus sign).
 template <class S>
 S static_defect_from_pressure_ratio(const S& static_pressure, const S& dynamic_pressure, const S& chi) {
+  require_scalar<S>();
   return (static_pressure + dynamic_pressure) / (S(1.0) + chi) - static_pressure;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/scalar.hpp>
 
@@ -8,6 +10,8 @@ namespace pcor {
 /// The thermodynamic constants of air with water vapour, at one humidity.
 template <class S>
 struct MoistAir {
+  static_assert(!std::is_integral_v<S>, "pcor computes with floating-point numbers: write 0.0, not 0");
+
   S gas_constant;            ///< R_a, J/(kg K), eq. 14
   S specific_heat_volume;    ///< c_v, J/(kg K), eq. 15
   S specific_heat_pressure;  ///< c_p, J/(kg K), eq. 16

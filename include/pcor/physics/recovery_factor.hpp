@@ -15,6 +15,16 @@ namespace pcor {
 struct RecoveryFactor {
   std::array<double, 4> coefficients{};  ///< c0 .. c3, 1
 
+  static constexpr double maximum = 1.2;  ///< of c0
+
+  /// True if all coefficients are finite and c0 is above zero, at most `maximum`.
+  constexpr bool is_possible() const {
+    for (const double coefficient : coefficients) {
+      if (!is_finite(coefficient)) return false;
+    }
+    return coefficients[0] > 0.0 && coefficients[0] <= maximum;
+  }
+
   /// True if the law does not depend on the Mach number.
   constexpr bool is_constant() const {
     return coefficients[1] == 0.0 && coefficients[2] == 0.0 && coefficients[3] == 0.0;

@@ -21,6 +21,12 @@ namespace pcor {
 /// argument-dependent lookup. Comparisons of a vector pack give one truth value for each lane, so formulas
 /// choose with `select` instead of `if`. Formula effects also require `abs`, `log10`, `tanh` and `pow`.
 
+/// Stops the compiler at a formula with integers, such as `moist_air(0)`, whose result would be truncated.
+template <class S>
+constexpr void require_scalar() {
+  static_assert(!std::is_integral_v<S>, "pcor computes with floating-point numbers: write 0.0, not 0");
+}
+
 /// The type of an expression in a state of scalar `X` and parameters of scalar `P`.
 template <class X, class P>
 using Promoted = decltype(std::declval<X>() * std::declval<P>());
@@ -49,6 +55,7 @@ constexpr auto is_missing(const S& value) {
 /// Not a number, in the scalar `S`.
 template <class S>
 constexpr S missing() {
+  require_scalar<S>();
   return S(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -86,6 +93,7 @@ constexpr S finite_or_missing(const S& value) {
 /// the chain; `std::pow`, accurate for any size, takes nearly twice the time.
 template <class S>
 S power(const S& base, const S& exponent) {
+  require_scalar<S>();
   if constexpr (std::is_floating_point_v<S>) {
     return std::exp2(exponent * std::log2(base));
   } else {
@@ -141,6 +149,7 @@ constexpr double polynomial(double x, const std::array<double, 8>& c) {
 /// ln(1 + x) = 2 artanh(x/(2 + x)), faster than two calls of the library.
 template <class S>
 S power_less_one(const S& part, const S& whole, const S& exponent) {
+  require_scalar<S>();
   if constexpr (std::is_same_v<S, double>) {
     const S s = part / (whole + whole + part);
     const S square = s * s;

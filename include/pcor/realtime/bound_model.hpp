@@ -60,6 +60,7 @@ class BoundModel {
     }
     if (location == EffectLocation::static_defect) {
       for (const Range& range : domain_) read.push_back(range.quantity);
+      if (watches_flaps_) read.push_back(Quantity::flaps);
     }
     return read;
   }
@@ -162,6 +163,7 @@ class BoundModel {
     bool is_of_surface;  // its envelope, not the domain of the law
   };
   std::vector<Range> domain_;
+  bool watches_flaps_ = false;  // recorded, and in no effect and not in the domain: outside it if extended
 
  private:
   friend class ModelBinder;

@@ -51,7 +51,8 @@ class Chain : public BoundModel {
     flags.set(is_missing(p), Quality::static_pressure_missing);
     flags.set(is_missing(q), Quality::dynamic_pressure_missing);
     flags.set(p < S(min_static_pressure), Quality::impossible_static_pressure);
-    flags.set(q <= S(0.0), Quality::impossible_dynamic_pressure);
+    flags.set(q <= S(0.0) || (p >= S(min_static_pressure) && !is_subsonic(p, q)),
+              Quality::impossible_dynamic_pressure);
     flags.set(q < S(policy_.min_dynamic_pressure), Quality::no_airflow);
 
     if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
@@ -86,9 +87,10 @@ class Chain : public BoundModel {
 
   /// Delta-p of the model, hPa: the sum of the effects at the static ports, limited by the policy. NaN if a
   /// pressure or an input of an effect is missing; if the dynamic pressure is below the minimum of the policy
-  /// (no airflow), unless a taper, which ends in zero, is used; and if the absolute defect exceeds the
-  /// dynamic pressure: above it the corrected dynamic pressure would be negative; below its negative the port
-  /// error would be half of the corrected one, ten times that of static ports.
+  /// (no airflow), unless a taper, which ends in zero, is used; above Mach 1 (`max_dynamic_ratio`); and if
+  /// the absolute defect exceeds the dynamic pressure: above it the corrected dynamic pressure would be
+  /// negative; below its negative the port error would be half of the corrected one, ten times that of static
+  /// ports.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
@@ -96,12 +98,14 @@ class Chain : public BoundModel {
     const S& q = state[Quantity::dynamic_pressure];
     R defect = sum<R>(EffectLocation::static_defect, state, parameters);
     const bool is_tapered = policy_.taper_below > 0.0;
-    const auto flowing = p >= S(min_static_pressure) && (is_tapered ? q > S(0.0) : is_flowing(q));
+    const auto possible = p >= S(min_static_pressure) && is_subsonic(p, q);
+    const auto flowing = possible && (is_tapered ? q > S(0.0) : is_flowing(q));
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
     for (const Range& range : domain_) {
       const S& value = state[range.quantity];
       flags.set(value < S(range.lower) || value > S(range.upper), Quality::outside_domain);
     }
+    if (watches_flaps_) flags.set(state[Quantity::flaps] > S(flaps_in), Quality::outside_domain);
     if (has_minimum()) {
       const auto below = defect < R(policy_.minimum);
       flags.set(below, Quality::minimum_applied);
@@ -112,16 +116,17 @@ class Chain : public BoundModel {
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
     }
-    const auto exceeds = p >= S(min_static_pressure) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
+    const auto exceeds = possible && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
     flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
     defect = select(exceeds, missing<R>(), defect);
-    const auto enough = is_tapered ? p >= S(min_static_pressure) && !is_missing(q) : flowing;
+    const auto enough = is_tapered ? possible && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
   }
 
-  /// True if a quantity is outside the domain of the law, so that its uncertainty does not apply. The
-  /// envelope of a surface does not count.
+  /// True if a quantity is outside the domain of the law, or the flaps are extended without an effect that
+  /// reads them, so that its uncertainty does not apply. The envelope of a surface does not count.
   bool is_outside_domain(const State<double>& state) const {
+    if (watches_flaps_ && state[Quantity::flaps] > flaps_in) return true;
     return std::any_of(domain_.begin(), domain_.end(), [&state](const Range& range) {
       const double value = state[range.quantity];
       return !range.is_of_surface && (value < range.lower || value > range.upper);
@@ -171,8 +176,8 @@ class Chain : public BoundModel {
   }
 
   /// Delta-p from LAMS at this sample, hPa, by the approach of the model. NaN if the laser or another input
-  /// is missing, without airflow, and if its absolute value exceeds the dynamic pressure, because the laser
-  /// airspeed must then be wrong.
+  /// is missing, without airflow, above Mach 1, and if its absolute value exceeds the dynamic pressure,
+  /// because the laser airspeed must then be wrong.
   template <class S, class P, class Flags>
   S lams_static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     const S& p = state[Quantity::port_static_pressure];
@@ -188,7 +193,8 @@ class Chain : public BoundModel {
     const S found =
         finite_or_missing(plausible_or_missing(Quantity::lams_static_defect, solution.static_defect));
     const auto exceeds = exceeds_dynamic_pressure(found, q);
-    const auto valid = p >= S(min_static_pressure) && is_flowing(q) && v > S(0.0) && !exceeds;
+    const auto valid =
+        p >= S(min_static_pressure) && is_subsonic(p, q) && is_flowing(q) && v > S(0.0) && !exceeds;
     const S defect = select(valid, found, missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
@@ -389,6 +395,12 @@ class Chain : public BoundModel {
   template <class S>
   auto is_flowing(const S& q) const {
     return q > S(0.0) && q >= S(policy_.min_dynamic_pressure);
+  }
+
+  // Also true if one is missing.
+  template <class S>
+  static auto is_subsonic(const S& p, const S& q) {
+    return !(q > S(max_dynamic_ratio) * p);
   }
 
   template <class S>

@@ -32,7 +32,7 @@ inline double usable_for_rates(Quantity quantity, double value) noexcept {
 /// Belongs to a chain that reads rates. Rates of recorded quantities are derivatives. The rate of the
 /// airspeed is computed along the laser beam, if there is a laser, from the corrected pressures, as the mean
 /// over the delay of the laser's clock, if the model has one, without the contributions of lag effects to the
-/// pressures. Does not allocate after the first use.
+/// pressures. Does not allocate after `build`.
 class LookAhead {
  public:
   /// Look-ahead buffer for `chain` at `rate` samples per second; nullopt if the chain reads no rate of

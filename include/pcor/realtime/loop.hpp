@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -16,6 +15,7 @@
 #include <pcor/realtime/functor.hpp>
 #include <pcor/realtime/look_ahead.hpp>
 #include <pcor/realtime/low_pass.hpp>
+#include <pcor/realtime/model_faults.hpp>
 #include <pcor/realtime/result_uncertainty.hpp>
 #include <pcor/realtime/sample_clock.hpp>
 #include <pcor/realtime/stages.hpp>
@@ -69,7 +69,10 @@ class Loop {
   /// including its filtered temperature (`LowPass`) unless disabled; omit that role to skip the laser. The
   /// rate is at most 10,000 samples per second. If an
   /// uncertainty is given, also the uncertainties of the results (`ResultUncertainty`). Returns nullopt if
-  /// the model cannot be used, with the reason in `error`.
+  /// the model cannot be used, with the reason in `error`. Variables of formulas that are not quantities of
+  /// the library are further inputs, which the host sets or a functor writes: `extra_names` lists them, also
+  /// a misspelt one, whose missing value makes the effect missing (bit `effect_input_missing`). With
+  /// `CorrectWith::lams` a laser without lock is replaced by the model (`CorrectedPressures`).
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model,
                                    const ModelUncertainty& uncertainty = {},
@@ -98,9 +101,10 @@ class Loop {
   /// Adds a functor. The order of adding does not matter; call `order` after the last.
   void add(std::unique_ptr<Functor> functor) { functors_.push_back(std::move(functor)); }
 
-  /// Orders the functors. Returns false without changes if two functors write one quantity or depend on each
-  /// other, or if one writes a quantity whose rate of change the model reads, or the liquid water of
-  /// `temp-wetting`, because these are read before functors run; `error` names them.
+  /// Orders the functors. Returns false without changes if one reads or writes a variable that was not added,
+  /// if two functors write one quantity or depend on each other, or if one writes a quantity whose rate of
+  /// change the model reads, or the liquid water of `temp-wetting`, because these are read before functors
+  /// run; `error` names them.
   bool order(std::string* error);
 
   /// True if some functor writes the quantity.
@@ -140,11 +144,17 @@ class Loop {
     return !started_ || !(step > 0.0 && step <= max_step_);
   }
 
-  /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record.
+  /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record. A
+  /// sample that starts anew, except the first and that after `reset`, has the bit `after_gap`, or
+  /// `uneven_samples` if its time does not increase or is not finite; with a delay it has
+  /// `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and frozen
+  /// sensors are not found.
   void run(double time) noexcept {
     quality_.clear();
     auto step = missing<double>();
     if (starts_anew(time)) {
+      if (!look_ahead_ && (started_ || !is_finite(time)))
+        quality_.set(time - previous_time_ > max_step_ ? Quality::after_gap : Quality::uneven_samples);
       for (const auto& functor : functors_) functor->reset();
       if (look_ahead_) look_ahead_->reset();
       if (wetness_) wetness_->reset();
@@ -216,6 +226,20 @@ inline bool Loop::order(std::string* error) {
   // The functor that is still to write each quantity, if any.
   std::array<const Functor*, state_capacity> writer{};
   for (const auto& functor : functors_) {
+    for (const std::vector<Quantity>* const quantities : {&functor->inputs(), &functor->outputs()}) {
+      for (const Quantity quantity : *quantities) {
+        if (quantity == Quantity::count) {
+          return fail(
+              "a functor reads or writes Quantity::count, which quantity_named returns for an unknown name; "
+              "correct the name");
+        }
+        if (index(quantity) > quantity_count && extra_number(quantity) >= extra_names_.size()) {
+          return fail("a functor reads or writes extra_quantity(" + std::to_string(extra_number(quantity)) +
+                      "), but the loop has " + std::to_string(extra_names_.size()) +
+                      " further variable(s); add it with add_variable");
+        }
+      }
+    }
     for (const Quantity output : functor->outputs()) {
       if (writer[index(output)] != nullptr) return fail("two functors write '" + to_string(output) + "'");
       const bool is_of_stage =
@@ -273,8 +297,9 @@ inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Qua
                                        const ModelUncertainty& uncertainty, LaserFilter filter) {
   BindingError why;
   std::optional<Chain> chain = Chain::build(model, recorded, &why);
-  if (!chain) {
-    if (error != nullptr) *error = why.message();
+  const std::string fault = chain ? fault_of(model) : why.message();
+  if (!fault.empty()) {
+    if (error != nullptr) *error = fault;
     return std::nullopt;
   }
   return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with, uncertainty, {}, filter);
@@ -287,11 +312,7 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     if (error != nullptr) *error = std::move(why);
     return std::nullopt;
   };
-  const auto text_of = [](double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.9g", value);
-    return std::string(text.data());
-  };
+  const auto text_of = detail::text_of_number;
   if (!arithmetic_keeps_nan()) {
     return fail(
         "this program is compiled with fast mathematics, which loses the NaN of missing values; remove "
@@ -303,8 +324,7 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
                 text_of(max_rate));
   }
   if (with == CorrectWith::lams && !chain->has_lams()) {
-    return fail(
-        "correction with LAMS needs the role 'lams_airspeed': name its variable in the table [variables]");
+    return fail("correction with LAMS needs the role 'lams_airspeed', which" + std::string(not_recorded));
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
@@ -334,7 +354,14 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     loop.add(std::move(low_pass));
   }
   if (uncertainty.has_systematic() || uncertainty.has_random()) {
-    auto functor = ResultUncertainty::build(chain, uncertainty, with, error,
+    std::shared_ptr<const Chain> uncertain = chain;
+    for (const ModelEffect& effect : uncertainty.calibration) {
+      BindingError why;
+      std::optional<Chain> extended = uncertain->with_effect(effect, &why);
+      if (!extended) return fail(why.message());
+      uncertain = std::make_shared<const Chain>(std::move(*extended));
+    }
+    auto functor = ResultUncertainty::build(std::move(uncertain), uncertainty, with, error,
                                             loop.look_ahead_ ? &*loop.look_ahead_ : nullptr);
     if (functor == nullptr) return std::nullopt;
     loop.add(std::move(functor));

@@ -34,6 +34,10 @@ struct BindingError {
   std::string message() const { return who.empty() ? what : who + " " + what; }
 };
 
+/// End of a message, after "needs the role ..., which".
+inline constexpr std::string_view not_recorded =
+    " is not among the recorded quantities; add it, in a model file as a variable in [variables]";
+
 /// Checks a model against the recorded quantities, and binds it.
 class ModelBinder {
  public:
@@ -64,11 +68,20 @@ class ModelBinder {
     for (std::size_t i = 0; i < state_capacity; ++i) {
       if (bound_.recorded_[i]) bound_.inputs_.push_back(static_cast<Quantity>(i));
     }
+    if (describes_flaps_) bound_.watches_flaps_ = false;
     return std::move(bound_);
   }
 
   bool add_model(const Model& model, const std::vector<Quantity>& recorded) {
-    for (const Quantity quantity : recorded) bound_.recorded_.set(index(quantity));
+    for (const Quantity quantity : recorded) {
+      if (quantity == Quantity::count || index(quantity) >= state_capacity) {
+        return fail(Code::unknown_quantity, "",
+                    "number " + std::to_string(index(quantity)) +
+                        " among the recorded quantities is no quantity; quantity_named returns "
+                        "Quantity::count for an unknown name: correct the name");
+      }
+      bound_.recorded_.set(index(quantity));
+    }
     bound_.lams_ = model.lams;
     bound_.recovery_ = model.recovery;
     bound_.attack_radome_ = model.attack_radome;
@@ -85,6 +98,7 @@ class ModelBinder {
     for (const DomainRange& range : model.domain) {
       if (!add_range(range)) return false;
     }
+    bound_.watches_flaps_ = bound_.recorded(Quantity::flaps) && changes_results_;
     return !bound_.has_lams() || require_lams();
   }
 
@@ -194,10 +208,10 @@ class ModelBinder {
     if (location == EffectLocation::radome) return require(Quantity::radome_dynamic_pressure, who);
     if (location == EffectLocation::attack_ratio) return require(Quantity::attack_ratio, who);
     if (location == EffectLocation::ambient_temperature && !bound_.has_temperature()) {
-      return fail(Code::role_missing, who,
-                  "needs the role 'recovery_temperature' or 'ambient_temperature': name its variable in the "
-                  "table [variables]",
-                  Quantity::recovery_temperature);
+      return fail(
+          Code::role_missing, who,
+          "needs the role 'recovery_temperature' or 'ambient_temperature', which" + std::string(not_recorded),
+          Quantity::recovery_temperature);
     }
     return true;
   }
@@ -212,7 +226,29 @@ class ModelBinder {
     term.parameter_count = effect.parameters.size();
     bound_.parameters_.insert(bound_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
     bound_.effects_.push_back(term);
+    if (!is_neutral(term, effect)) {
+      changes_results_ = true;
+      if (reads_flaps(term)) describes_flaps_ = true;
+    }
     if (bound_.is_within_reach(term.location)) add_term(term);
+  }
+
+  static bool is_neutral(const Term& term, const ModelEffect& effect) {
+    if (term.effect >= catalogue_size) return false;
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (effect.parameters[i] != effect_info[term.effect].parameters[i].neutral) return false;
+    }
+    return true;
+  }
+
+  bool reads_flaps(const Term& term) const {
+    const auto is_among = [](const auto& quantities) {
+      return std::find(quantities.begin(), quantities.end(), Quantity::flaps) != quantities.end();
+    };
+    if (term.effect < catalogue_size) return is_among(effect_info[term.effect].needs);
+    if (term.effect == Term::is_formula) return is_among(bound_.formulas_[term.formula].variables);
+    const auto& axes = bound_.surfaces_[term.formula].axes;
+    return axes[0].quantity == Quantity::flaps || axes[1].quantity == Quantity::flaps;
   }
 
   // Additional amounts have no inputs; at a location that the model does not use, they have no effect.
@@ -254,6 +290,7 @@ class ModelBinder {
       return fail(Code::unknown_quantity, "", "there is no quantity " + quote(range.quantity));
     if (!require(quantity, "the domain of the model")) return false;
     bound_.domain_.push_back({quantity, range.lower, range.upper, false});
+    if (quantity == Quantity::flaps) describes_flaps_ = true;
     return true;
   }
 
@@ -319,9 +356,8 @@ class ModelBinder {
     if (!radome.is_calibrated()) {
       const std::string name(info_of(angle).name);
       return fail(Code::role_missing, who,
-                  "needs the role '" + name +
-                      "': name its variable in the table [variables], or give [radome] " + name +
-                      " = [offset, slope] to derive it from the radome pressures",
+                  "needs the role '" + name + "', which" + std::string(not_recorded) + ", or give [radome] " +
+                      name + " = [offset, slope] to derive it from the radome pressures",
                   angle);
     }
     if (radome.needs_mach() && !require(Quantity::mach, who)) return false;
@@ -333,12 +369,14 @@ class ModelBinder {
     if (!is_role(quantity))
       return fail(Code::circular_dependency, who, "needs " + name + ", which is known only after delta-p",
                   quantity);
-    return fail(Code::role_missing, who,
-                "needs the role " + name + ": name its variable in the table [variables]", quantity);
+    return fail(Code::role_missing, who, "needs the role " + name + ", which" + std::string(not_recorded),
+                quantity);
   }
 
   BoundModel bound_;
   BindingError& error_;
+  bool changes_results_ = false;
+  bool describes_flaps_ = false;
 };
 
 }  // namespace pcor

@@ -16,6 +16,13 @@
 
 namespace pcor {
 
+/// A name in capitals, as nimbus keeps those of its defaults file.
+inline std::string in_capitals(std::string name) {
+  for (char& letter : name)
+    letter = letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
+  return name;
+}
+
 namespace detail {
 
 template <class Host, class = void>
@@ -23,6 +30,32 @@ struct HasTime : std::false_type {};
 
 template <class Host>
 struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
+
+// Name in `names` that shares the longest prefix and suffix with `name`, case-insensitive; empty if they are
+// less than half of it.
+inline std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
+  const std::string requested = in_capitals(name);
+  const auto in_common = [&requested](const std::string& other) {
+    const std::string found = in_capitals(other);
+    const auto begin = std::mismatch(requested.begin(), requested.end(), found.begin(), found.end()).first;
+    const auto end = std::mismatch(requested.rbegin(), requested.rend(), found.rbegin(), found.rend()).first;
+    return (begin - requested.begin()) + (end - requested.rbegin());
+  };
+  const auto nearest = std::max_element(
+      names.begin(), names.end(),
+      [&in_common](const std::string& a, const std::string& b) { return in_common(a) < in_common(b); });
+  const auto half = static_cast<std::ptrdiff_t>(name.size() / 2);
+  return nearest == names.end() || in_common(*nearest) < half ? std::string() : *nearest;
+}
+
+inline bool is_in_formula(const std::string& name, const Model& model) {
+  return std::any_of(model.effects.begin(), model.effects.end(), [&name](const ModelEffect& effect) {
+    const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+    if (!effect.is_formula() || !formula) return false;
+    const std::vector<std::string>& variables = formula->variables();
+    return std::find(variables.begin(), variables.end(), name) != variables.end();
+  });
+}
 
 }  // namespace detail
 
@@ -70,10 +103,10 @@ class NimbusSystem {
  public:
   using Entry = typename Host::Entry;
 
-  /// Sets `model` up for both rates (samples per second), replacing any previous model. `inputs` are the
-  /// names of roles, or of variables in the model's formulas, in the order of the leader's dependency line.
-  /// If an `uncertainty` is given, entries may fetch those of the results. Returns false without changes if
-  /// the model cannot be used, with the reason in `error`.
+  /// Sets `model` up for both rates (samples per second, the lower first), replacing any previous model.
+  /// `inputs` are the names of roles, or of variables in the model's formulas, in the order of the leader's
+  /// dependency line. If an `uncertainty` is given, entries may fetch those of the results. Returns false
+  /// without changes if the model cannot be used, with the reason in `error`.
   static bool install(const Model& model, const std::vector<std::string>& inputs, double low_rate,
                       double high_rate, std::string* error, CorrectWith with = CorrectWith::model,
                       const ModelUncertainty& uncertainty = {}) {
@@ -81,15 +114,27 @@ class NimbusSystem {
       if (error != nullptr) *error = std::move(why);
       return false;
     };
+    if (!(low_rate < high_rate)) {
+      return fail("the low rate is " + detail::text_of_number(low_rate) + " Hz, the high rate " +
+                  detail::text_of_number(high_rate) + " Hz; give the lower one first");
+    }
     std::vector<Quantity> roles;
     for (const std::string& name : inputs) {
       if (std::count(inputs.begin(), inputs.end(), name) > 1) return fail("two inputs are '" + name + "'");
+      if (quantity_named(name) == Quantity::count && !detail::is_in_formula(name, model)) {
+        std::vector<std::string> known;
+        for (std::size_t i = 0; i < role_count; ++i) known.emplace_back(quantity_info[i].name);
+        const std::string nearest = detail::nearest_name(name, known);
+        return fail("the input '" + name + "' is neither a role nor a variable of the model's formulas" +
+                    (nearest.empty() ? "" : "; the nearest role is '" + nearest + "'"));
+      }
       const Quantity quantity = quantity_named(name);
       if (quantity != Quantity::count && is_role(quantity)) roles.push_back(quantity);
     }
     BindingError why;
     std::optional<Chain> bound_model = Chain::build(model, roles, &why);
     if (!bound_model) return fail(why.message());
+    if (const std::string fault = fault_of(model); !fault.empty()) return fail(fault);
     if (bound_model->needs(Quantity::time) && !detail::HasTime<Host>::value) {
       return fail(
           "an effect of the model depends on the time since the first record; give the host a function "
@@ -110,9 +155,8 @@ class NimbusSystem {
       Quantity quantity = quantity_named(name);
       if (quantity == Quantity::count) {
         const auto extra = std::find(extras.begin(), extras.end(), name);
-        if (extra == extras.end()) {
-          return fail("the input '" + name + "' is neither a role nor a variable of the model's formulas");
-        }
+        if (extra == extras.end())
+          return fail("the input '" + name + "' is a variable of no formula that acts; remove it");
         quantity = extra_quantity(static_cast<std::size_t>(extra - extras.begin()));
       } else if (!is_role(quantity)) {
         return fail("the input '" + name + "' is derived, not recorded");
@@ -252,13 +296,6 @@ inline std::vector<std::string> default_keys(const Model& model, const std::stri
   return keys;
 }
 
-/// A name in capitals, as nimbus keeps those of its defaults file.
-inline std::string in_capitals(std::string name) {
-  for (char& letter : name)
-    letter = letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
-  return name;
-}
-
 /// Replaces the coefficients of `model` that a defaults file names, in original or upper case, and returns
 /// their number. `find(key)`, with a `const char*`, gives a pointer to the value (`const float*` or `const
 /// double*`), or nullptr if the file does not have it. A `float` holds seven digits.
@@ -277,25 +314,6 @@ std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
   }
   return replaced;
 }
-
-namespace detail {
-
-// Name in `names` that shares the longest prefix and suffix with `name`, case-insensitive.
-inline std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
-  const std::string requested = in_capitals(name);
-  const auto in_common = [&requested](const std::string& other) {
-    const std::string found = in_capitals(other);
-    const auto begin = std::mismatch(requested.begin(), requested.end(), found.begin(), found.end()).first;
-    const auto end = std::mismatch(requested.rbegin(), requested.rend(), found.rbegin(), found.rend()).first;
-    return (begin - requested.begin()) + (end - requested.rbegin());
-  };
-  const auto nearest = std::max_element(
-      names.begin(), names.end(),
-      [&in_common](const std::string& a, const std::string& b) { return in_common(a) < in_common(b); });
-  return nearest == names.end() ? std::string() : *nearest;
-}
-
-}  // namespace detail
 
 /// Unused overrides: names among `keys` of a defaults file that begin with `prefix` and a point but do not
 /// match a coefficient of `model`, case-insensitive. A host should report them and stop.

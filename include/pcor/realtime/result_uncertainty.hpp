@@ -78,13 +78,13 @@ class ResultUncertainty final : public Functor {
 
   void reset() noexcept override { is_complete_ = false; }
 
-  void compute(State<double>& state, QualityFlags&) noexcept override {
+  void compute(State<double>& state, QualityFlags& flags) noexcept override {
     if (!still_holds(state)) find(state);
     // The product makes the uncertainty missing if the result is missing, and outside the domain of the law.
     const double zero = chain_->is_outside_domain(state) ? missing<double>() : 0.0;
     for (std::size_t i = 0; i < uncertain_results.size(); ++i)
       state[uncertain_results[i].uncertainty] = found_[i] + zero * state[uncertain_results[i].result];
-    if (with_ == CorrectWith::lams && !is_missing(state[Quantity::lams_static_defect])) {
+    if (flags.has(Quality::corrected_with_lams)) {
       for (std::size_t i = 1; i < uncertain_results.size(); ++i)
         state[uncertain_results[i].uncertainty] = missing<double>();
     }
@@ -223,7 +223,6 @@ class ResultUncertainty final : public Functor {
                     const LookAhead* look_ahead)
       : Functor(reads(*chain, with), writes()),
         chain_(std::move(chain)),
-        with_(with),
         static_defect_(uncertainty.static_defect),
         static_defect_ratio_(uncertainty.static_defect_ratio) {
     for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
@@ -630,7 +629,6 @@ class ResultUncertainty final : public Functor {
   }
 
   std::shared_ptr<const Chain> chain_;
-  CorrectWith with_;
   double static_defect_;
   double static_defect_ratio_;
   std::vector<std::size_t> at_ports_;  // effects before and at them

@@ -176,8 +176,20 @@ struct LamsStaticDefect {
   }
 };
 
+/// True if the laser has its lock: its delta-p differs from that of the model, or from zero if the model has
+/// none, by at most three tenths of the dynamic pressure (`max_lams_departure`), which is more than any
+/// static defect. False if one of them is missing.
+template <class S>
+auto has_laser_lock(const State<S>& state) {
+  const S& defect = state[Quantity::static_defect];
+  const S departure = state[Quantity::lams_static_defect] - select(is_missing(defect), S(0.0), defect);
+  const S limit = S(2.0 * max_lams_departure) * state[Quantity::port_dynamic_pressure];
+  return departure <= limit && departure >= -limit;
+}
+
 /// Corrected static and dynamic pressure, hPa: `Chain::correct`, with delta-p of the model, or with that of
-/// LAMS if it is valid; the quality bit `corrected_with_lams` marks the latter.
+/// LAMS if it is valid; the quality bit `corrected_with_lams` marks the latter. Without lock of the laser
+/// (`has_laser_lock`) the model corrects, with the bit `lams_missing`.
 struct CorrectedPressures {
   static Quantities reads(const Correction& correction) {
     Quantities read{Quantity::port_static_pressure, Quantity::port_dynamic_pressure, Quantity::static_defect};
@@ -192,10 +204,10 @@ struct CorrectedPressures {
   static void compute(const Correction& correction, State<S>& state, const P*, Flags& flags) {
     S defect = state[Quantity::static_defect];
     if (correction.with == CorrectWith::lams) {
-      const S lams = state[Quantity::lams_static_defect];
-      const auto valid = !is_missing(lams);
+      const auto valid = has_laser_lock(state);
       flags.set(valid, Quality::corrected_with_lams);
-      defect = select(valid, lams, defect);
+      flags.set(!valid, Quality::lams_missing);
+      defect = select(valid, state[Quantity::lams_static_defect], defect);
     }
     correction.chain.correct(state, defect, flags);
   }
@@ -221,12 +233,17 @@ struct AirState {
   }
 };
 
-/// Temperature (K) and dynamic pressure (hPa) from LAMS and the corrected pressures: `Chain::lams_air`.
+/// Temperature (K) and dynamic pressure (hPa) from LAMS and the corrected pressures: `Chain::lams_air`. If
+/// LAMS is to correct the pressures, NaN without lock.
 struct LamsAir {
   static Quantities reads(const Correction& correction) {
-    return joined({{Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::humidity,
-                    Quantity::ambient_temperature},
-                   read_of_beam(correction.chain)});
+    Quantities read{Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::humidity,
+                    Quantity::ambient_temperature};
+    if (correction.with == CorrectWith::lams) {
+      read = joined(
+          {read, {Quantity::port_dynamic_pressure, Quantity::static_defect, Quantity::lams_static_defect}});
+    }
+    return joined({read, read_of_beam(correction.chain)});
   }
   static Quantities writes(const Correction& correction) {
     if (!correction.chain.has_lams()) return {};
@@ -236,6 +253,10 @@ struct LamsAir {
   template <class S, class P, class Flags>
   static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
     correction.chain.lams_air(state, parameters, flags);
+    if (correction.with != CorrectWith::lams) return;
+    const auto has_lock = has_laser_lock(state);
+    for (const Quantity quantity : {Quantity::lams_temperature, Quantity::lams_dynamic_pressure})
+      state[quantity] = select(has_lock, state[quantity], missing<S>());
   }
 };
 

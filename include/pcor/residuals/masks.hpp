@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/model/quantity.hpp>
 #include <pcor/regimes/regimes.hpp>
 
 #include <array>
@@ -42,9 +43,6 @@ extern const std::array<MaskInfo, mask_count> mask_info;
 
 /// Reasons for unused samples, by decreasing count, for messages: "1203 on the ground, 17 laser ...".
 std::string mask_text(const std::array<std::size_t, mask_count>& counts);
-
-/// Upper limit of retracted flaps, percent.
-inline constexpr double flaps_in = 5.0;
 
 /// Selection of samples for a comparison.
 struct MaskOptions {

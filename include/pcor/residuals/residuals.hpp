@@ -36,23 +36,23 @@ class Residuals {
   Residuals& operator=(Residuals&&) noexcept;
   ~Residuals();
 
-  const FlightSamples& samples() const;
-  const std::shared_ptr<const FlightSamples>& shared_samples() const;
-  std::size_t size() const;
+  const FlightSamples& samples() const { return *samples_; }
+  const std::shared_ptr<const FlightSamples>& shared_samples() const { return samples_; }
+  std::size_t size() const { return samples_->time.size(); }
 
   /// Parameters in the model files.
-  const std::vector<double>& parameters() const;
+  const std::vector<double>& parameters() const { return parameters_; }
 
   /// True for each parameter in which the residual is exactly linear: for a static-pressure residual the
   /// parameters of catalogue effects at the static ports, unless delta-p has a lower limit.
-  const std::vector<bool>& is_linear() const;
+  const std::vector<bool>& is_linear() const { return linear_; }
 
   /// Mask of every sample, at the parameters of the files unless `set_mask` replaced it.
-  const std::vector<Mask>& mask() const;
+  const std::vector<Mask>& mask() const { return mask_; }
 
   /// Masks for the residual at these parameters, on which the detection of bursts depends.
   std::vector<Mask> masks_at(const double* parameters, const MaskOptions& options) const;
-  void set_mask(std::vector<Mask> mask);
+  void set_mask(std::vector<Mask> mask) { mask_ = std::move(mask); }
 
   std::array<std::size_t, mask_count> mask_counts() const;
 
@@ -122,8 +122,13 @@ class Residuals {
   std::vector<double> quantity(Quantity quantity, const double* parameters) const;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::shared_ptr<const FlightSamples> samples_;
+  std::unique_ptr<internal::ModelOnSamples> model_;
+  std::unique_ptr<internal::ReferenceOnSamples> reference_;
+  std::vector<double> parameters_;
+  std::vector<bool> terms_;   // one per parameter: whether delta-p alone depends on it, as a linear term
+  std::vector<bool> linear_;  // one per parameter: linear term without a minimum of delta-p
+  std::vector<Mask> mask_;
 };
 
 }  // namespace pcor

@@ -9,8 +9,8 @@ namespace pcor {
 struct Statistics {
   std::size_t samples = 0;
   double mean = 0.0;  ///< mean residual, hPa
-  /// Bias of the corrected static pressure, hPa: the mean residual; against wind or height its estimate
-  /// without variations of the atmosphere, if they were separated.
+  /// Mean residual (reference minus model), hPa: positive if delta-p is too small. Against wind or height its
+  /// estimate without variations of the atmosphere, if they were separated.
   double bias = 0.0;
   /// Standard error of the bias, hPa, includes autocorrelation and drift of the noise.
   double bias_error = 0.0;
@@ -26,8 +26,9 @@ struct Statistics {
 template <class Field>
 void describe(const Statistics& self, Field& field) {
   field("samples", self.samples, "number of samples");
-  field("bias_hpa", self.bias,
-        "mean residual; without variations of the atmosphere where they were separated");
+  field(
+      "bias_hpa", self.bias,
+      "mean residual, reference minus model, without variations of the atmosphere where they were separated");
   field("mean_hpa", self.mean, "mean residual as measured");
   field("bias_stderr_hpa", self.bias_error, "standard error of the bias, with the correlation of the noise");
   field("rms_hpa", self.rms, "rms residual");

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -32,7 +31,7 @@ inline constexpr double height_window = 60.0;
 class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
  public:
   HeightOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
-      : OfNeighbours(model, samples.time.size()),
+      : OfNeighbours(model, samples, height_window),
         height_(*samples.reference.find(Quantity::altitude)),
         time_(samples.time),
         step_(samples.step) {
@@ -41,10 +40,6 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
       const auto [pressure, temperature, gas_constant] = parts_of(i, parameters);
       pressure_of_height_.push_back(pressure * constants::standard_gravity / (gas_constant * temperature));
     }
-  }
-
-  std::size_t reach() const override {
-    return static_cast<std::size_t>(std::lround(0.5 * height_window / step_));
   }
 
   /// Static pressure, hPa; temperature, K; gas constant, J kg^-1 K^-1.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -72,16 +73,19 @@ class LamsOnSamples final : public ReferenceOnSamples {
 
   /// Derivative of the residual with respect to the speed along the beam, hPa per m/s, at the prediction with
   /// the files' parameters, for every sample.
-  std::vector<double> sensitivity() const {
-    // From columns at a distant delay the speed would be extrapolated.
-    const std::vector<double> parameters = model_.parameters_of_columns();
-    const std::vector<Jet> constant(parameters.begin(), parameters.end());
-    std::vector<double> result(beam_.size());
-    for (std::size_t i = 0; i < result.size(); ++i) {
-      const Jet beam(predicted_at(i, parameters.data()), 0);
-      result[i] = residual_at(i, beam, constant.data()).v[0];
-    }
-    return result;
+  const std::vector<double>& sensitivity() const {
+    std::call_once(is_found_, [this] {
+      // From columns at a distant delay the speed would be extrapolated.
+      const std::vector<double> parameters = model_.parameters_of_columns();
+      const std::vector<Jet> constant(parameters.begin(), parameters.end());
+      std::vector<double> found;
+      for (std::size_t i = 0; i < beam_.size(); ++i) {
+        const Jet beam(predicted_at(i, parameters.data()), 0);
+        found.push_back(residual_at(i, beam, constant.data()).v[0]);
+      }
+      sensitivity_ = std::move(found);
+    });
+    return sensitivity_;
   }
 
  private:
@@ -96,6 +100,8 @@ class LamsOnSamples final : public ReferenceOnSamples {
   const std::vector<double>& beam_;
   const ModelOnSamples& model_;
   const ModelSamples& samples_;
+  mutable std::once_flag is_found_;
+  mutable std::vector<double> sensitivity_;  // computed on first use
 };
 
 class LamsReference final : public Reference {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -22,7 +23,7 @@ namespace pcor::internal {
 
 /// Reference whose residual at a sample depends on the neighbouring samples, in two steps: for each sample
 /// `part_count` numbers from the model at the sample alone, then the residuals from the numbers of all
-/// samples. `Derived` defines, in addition to `reach`,
+/// samples. `Derived` defines
 ///
 ///     template <class S>
 ///     std::array<S, part_count> parts_of(std::size_t sample, const S* parameters) const
@@ -35,7 +36,13 @@ namespace pcor::internal {
 template <class Derived, std::size_t part_count>
 class OfNeighbours : public ReferenceOnSamples {
  public:
-  OfNeighbours(const ModelOnSamples& model, std::size_t size) : model_(model), size_(size) {}
+  /// @param window of the samples on which a residual depends, s
+  OfNeighbours(const ModelOnSamples& model, const FlightSamples& samples, double window)
+      : model_(model),
+        size_(samples.time.size()),
+        reach_(static_cast<std::size_t>(std::lround(0.5 * window / samples.step))) {}
+
+  std::size_t reach() const final { return reach_; }
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     find(block.samples, block.count, parameters, out);
@@ -114,19 +121,14 @@ class OfNeighbours : public ReferenceOnSamples {
                                                           const std::vector<std::size_t>& requested) const {
     std::vector<std::vector<Parts<double>>> slopes(requested.size(),
                                                    std::vector<Parts<double>>(span.length()));
-    for (std::size_t first = 0; first < requested.size(); first += jet_width) {
-      const std::size_t width = std::min<std::size_t>(jet_width, requested.size() - first);
-      std::vector<Jet> dual(parameters, parameters + model_.parameters().size());
-      for (std::size_t d = 0; d < width; ++d)
-        dual[requested[first + d]].v[static_cast<Eigen::Index>(d)] = 1.0;
-      const std::vector<Parts<Jet>> of_samples = parts(span, static_cast<const Jet*>(dual.data()));
-      for (std::size_t k = 0; k < span.length(); ++k) {
-        for (std::size_t part = 0; part < part_count; ++part) {
-          for (std::size_t d = 0; d < width; ++d)
-            slopes[first + d][k][part] = of_samples[k][part].v[static_cast<Eigen::Index>(d)];
-        }
-      }
-    }
+    std::vector<ColumnOfParameter> columns;
+    for (std::size_t k = 0; k < requested.size(); ++k)
+      columns.push_back({requested[k], slopes[k].front().data()});
+    differentiate(span.length() * part_count, {parameters, parameters + model_.parameters().size()}, columns,
+                  [&](const Jet* dual, Jet* out) {
+                    for (const Parts<Jet>& each : parts(span, dual))
+                      out = std::copy(each.begin(), each.end(), out);
+                  });
     return slopes;
   }
 
@@ -139,6 +141,7 @@ class OfNeighbours : public ReferenceOnSamples {
 
   const ModelOnSamples& model_;
   std::size_t size_;
+  std::size_t reach_;
 };
 
 /// Reference by `OnSamples`, which is `OfNeighbours` and requires the temperature, with variables that the

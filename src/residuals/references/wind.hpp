@@ -37,16 +37,13 @@ inline constexpr double wind_window = 900.0;
 class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
  public:
   WindOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
-      : OfNeighbours(model, samples.time.size()),
+      : OfNeighbours(model, samples, wind_window),
         read_(samples.reference),
         heading_(*read_.find(Quantity::heading)),
         along_(ground_speed_along_heading()),
         motion_(samples.motion),
         static_pressure_(*samples.model.find(Quantity::static_pressure)),
-        dynamic_pressure_(*samples.model.find(Quantity::dynamic_pressure)),
-        reach_(static_cast<std::size_t>(std::lround(0.5 * wind_window / samples.step))) {}
-
-  std::size_t reach() const override { return reach_; }
+        dynamic_pressure_(*samples.model.find(Quantity::dynamic_pressure)) {}
 
   /// The quantity d, m/s.
   template <class S>
@@ -156,7 +153,6 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   const FlightMotion& motion_;
   const std::vector<double>& static_pressure_;
   const std::vector<double>& dynamic_pressure_;
-  std::size_t reach_;
 };
 
 class WindReference final : public ReferenceOfNeighbours<WindOnSamples> {
