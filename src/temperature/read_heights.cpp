@@ -13,6 +13,7 @@
 #include "campaign/model_parameters.hpp"
 #include "model_io/archived_model.hpp"
 #include "model_io/calibration.hpp"
+#include "model_io/sensor_doubt.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/model_on_samples.hpp"
@@ -214,7 +215,7 @@ std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefiniti
 }
 
 std::optional<double> stated_law_variance(const ModelDefinition& model, const FlightAir& air) {
-  const ModelUncertainty stated = uncertainty_of(model);
+  const ModelUncertainty stated = stated_uncertainty(model);
   const bool has_rest = stated.static_defect > 0.0 || stated.static_defect_ratio > 0.0;
   const Eigen::MatrixXd covariance = stated_covariance(model);
   if (!has_rest && !states_law(model, covariance)) return std::nullopt;

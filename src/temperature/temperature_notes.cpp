@@ -60,8 +60,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     const std::string by = with_error(error.change, error.standard_error);
     warnings.push_back(fmt::format(
         "heights indicate an error of the static-pressure model: {}, a range of {:.2f} hPa over the flights; "
-        "it "
-        "was removed before fitting the thermometer, {}{}refit the model first",
+        "it was removed before fitting the thermometer, {}{}refit the model first",
         is_in_model ? fmt::format("{} of {} is too small by {}", error.parameter, error.effect, by)
                     : fmt::format("delta-p lacks a term like {}, {} = {}", error.effect, error.parameter, by),
         error.range, size_text(error), is_in_model ? "" : fmt::format("add {} and ", error.effect)));

@@ -350,9 +350,10 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
         "{}GPS cannot tell whether {} is right{}. To test it, give flights with circles or reverse headings "
         "and --reference wind, or another --reference",
         which, comparison.models.size() > 1 ? "one of the models" : best->name,
-        is_determined ? fmt::format(": {} {}, which with two standard errors exceeds {} hPa", best->name,
-                                    correction, max_model_error)
-                      : "");
+        is_determined
+            ? fmt::format(": {} {}, which with two standard errors exceeds {} hPa",
+                          comparison.models.size() > 1 ? best->name : "it", correction, max_model_error)
+            : "");
   }
   if (by_gps && compared->model.model.effects.empty()) {
     return fmt::format(
