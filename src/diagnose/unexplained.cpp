@@ -571,8 +571,10 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
 
 std::string id_of_trace(const std::string& variable) {
   std::string id = "traced-";
-  for (const unsigned char letter : variable)
+  for (const char each : variable) {
+    const auto letter = static_cast<unsigned char>(each);
     id += std::isalnum(letter) != 0 ? static_cast<char>(std::tolower(letter)) : '-';
+  }
   return id;
 }
 
