@@ -88,7 +88,7 @@ class TomlReader {
   /// An error at the value of `entry`; for an error at the key use its `position`.
   [[noreturn]] void fail(const Entry& entry, const std::string& what) const { fail(*entry.node, what); }
 
-  /// The same with a text that has these values.
+  /// Formats the text with these values, and fails with it.
   template <class Where, class First, class... Others>
   [[noreturn]] void fail(const Where& where, fmt::format_string<const First&, const Others&...> text,
                          const First& first, const Others&... others) const {

@@ -94,8 +94,8 @@ double usual_step(const CheckedFlights& flights,
                   const std::function<std::vector<double>(const CheckedFlight&)>& series);
 
 /// Adds a note if some flights are not used because of their record interval.
-/// @param step of the used flights, s @param has_values whether a flight has values for the check, whatever
-/// its interval
+/// @param step of the used flights, s @param has_values whether a flight has values for the check, with any
+/// interval
 void note_other_steps(const CheckedFlights& flights, double step,
                       const std::function<bool(const CheckedFlight&)>& has_values, Notes& notes);
 

@@ -442,7 +442,7 @@ class GpsSolver {
   const FitTask& task_;
   Solution& solution_;
   FitCovariance& covariance_;
-  const bool is_alone_;  // without other references
+  const bool is_alone_;  // the fit has no other reference
   const std::vector<std::size_t>& requested_;
   const std::vector<std::size_t>& fixed_coefficients_;  // fixed coefficients with a stated error
   const Eigen::Index count_;

@@ -33,7 +33,7 @@ struct GpsFit {
 /// does not depend on them, and so corrects them.
 /// @param flights for each reference of GPS the flights of the fit
 /// @param solution in: the start, or the result of the other references; out: values and bounds
-/// @param covariance in: that of the other references; empty if there are none. Out: all but `doubts`; the
+/// @param covariance in: covariance by the other references; empty without them. Out: all but `doubts`; the
 /// jackknife omits parts of five minutes; `by_noise` excludes held directions by GPS alone, and is the stated
 /// covariance after other references
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, Solution& solution, FitCovariance& covariance);

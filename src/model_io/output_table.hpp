@@ -28,7 +28,7 @@ const std::vector<OutputRow>& output_table();
 /// The standard name of the quality bits.
 inline constexpr std::string_view quality_output = "PCORFLAG";
 
-/// What the default name of an uncertainty has after that of its result.
+/// Ending of the default name of an uncertainty, after the name of its result.
 inline constexpr std::string_view uncertainty_ending = "_uncertainty";
 
 /// The standard names of all results.

@@ -7,7 +7,7 @@
 
 namespace pcor::internal {
 
-/// Unit of a parameter of an effect; "1" for a surface. Of a formula it is the unit of the value, if the
+/// Unit of a parameter of an effect; "1" for a surface. For a formula it is the unit of the value, if the
 /// formula is a sum of this coefficient times pure numbers and of a part without it; divided by the unit of a
 /// quantity, if this coefficient is also multiplied by it; otherwise empty, because units of formulas are not
 /// computed.

@@ -53,7 +53,7 @@ Statistics ResidualSums::statistics() const {
     constexpr double known = 1.0;  // hPa
     const bool has_rows = left(1, 1) > rank_limit * left(0, 0);
     const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
-    // What the noise of GPS does not explain makes the error larger (Birge 1932, Physical Review 40, 207).
+    // A residual beyond the noise of GPS makes the error larger (Birge 1932, Physical Review 40, 207).
     const double birge = std::fmax(1.0, result.scatter() / result.noise_rms);
     result.bias_error = has_rows ? birge * std::sqrt(both.sum()) : nan;
     // Sign of a residual: positive if delta-p is too small. An undetermined level stays as measured.

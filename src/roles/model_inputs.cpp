@@ -40,9 +40,9 @@ void note_other_unit(const Flight& flight, const ModelDefinition& file, const Va
         is_same(a.scale(), b.scale()) || (stated == family.unit_of(name) && is_same(a.scale(), -b.scale()));
     if (same_scale && is_same(a.offset(), b.offset())) return;
   }
-  Note note = warning_note(
-      fmt::format("{} is read in {} in place of {}: [units] of the model or the data of the aircraft say so",
-                  name, quote(stated), quote(recorded)));
+  Note note = warning_note(fmt::format(
+      "{} is read in {} in place of {}, as [units] of the model or the data of the aircraft state", name,
+      quote(stated), quote(recorded)));
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
 }
 

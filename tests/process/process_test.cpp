@@ -67,7 +67,7 @@ parameters = { a2 = 0.030849643 }
 )");
 }
 
-// The same without the laser.
+// The model of these tests without the laser.
 ModelDefinition law_model() {
   ModelDefinition model = lams_model();
   model.variables.erase(Quantity::lams_airspeed);

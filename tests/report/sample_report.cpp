@@ -35,7 +35,7 @@ const std::vector<Leg> legs{{"climb", 17, 4200, 118},   {"level", 14, 4200, 118}
 
 constexpr double start = 1054468800 + 600;  // start of the first flight, s since 1970
 
-constexpr std::size_t old_model = 8, refit = 9;  // among the columns of the report
+constexpr std::size_t old_model = 8, refit = 9;  // indices of columns of the report
 
 // One sample, `part` of the way through a leg that began at `from`.
 void add_sample(std::vector<pcor::ReportColumn>& columns, const Leg& from, const Leg& leg, double part,

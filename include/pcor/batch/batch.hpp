@@ -15,7 +15,7 @@ namespace pcor {
 ///
 /// Formulas are those of the loop; results agree within 1e-13 (1e-7 for delta-p from LAMS by approach 2, the
 /// tolerance of its iteration). There are no quality bits: undefined results are NaN. Samples are
-/// independent, so a model with rates of change needs them as arrays: those of `rates` that it reads,
+/// independent, so a model with rates of change needs them as arrays: the `rates` that it reads,
 /// `airspeed_rate` for the clock of the laser, and `wetness` for the thermometer in cloud.
 class Batch {
  public:

@@ -32,7 +32,7 @@ inline constexpr double max_dynamic_ratio = 0.892929;
 ///     M = { (2 c_v/R_a) [ ((p+q)/p)^(R_a/c_p) - 1 ] }^(1/2)
 ///
 /// Result: 1, zero or above. Domain: p > 0, q >= 0; anything else gives NaN. Above Mach 1
-/// (`max_dynamic_ratio`), which is not checked, a pitot tube is behind a shock and M is too large. The
+/// (`max_dynamic_ratio`), which is not checked, a shock stands before a pitot tube and M is too large. The
 /// temperature is not needed. Accuracy for `double`: 1e-15 relative below Mach 0.847; for packs and dual
 /// numbers 1e-14 at q/p = 0.1, 1e-10 at q/p = 1e-5. Source: memo eq. 7 (2 c_v/R_a, see its misprint).
 template <class S>

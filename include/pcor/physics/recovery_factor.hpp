@@ -15,7 +15,7 @@ namespace pcor {
 struct RecoveryFactor {
   std::array<double, 4> coefficients{};  ///< c0 .. c3, 1
 
-  static constexpr double maximum = 1.2;  ///< of c0
+  static constexpr double maximum = 1.2;  ///< largest possible c0
 
   /// True if all coefficients are finite and c0 is above zero, at most `maximum`.
   constexpr bool is_possible() const {

@@ -145,7 +145,7 @@ class Loop {
   }
 
   /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record. A
-  /// sample that starts anew, except the first and that after `reset`, has the bit `after_gap`, or
+  /// sample that starts again (not the first, nor the first after `reset`) has the bit `after_gap`, or
   /// `uneven_samples` if its time does not increase or is not finite; with a delay it has
   /// `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and frozen
   /// sensors are not found.

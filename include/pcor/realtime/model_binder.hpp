@@ -77,7 +77,7 @@ class ModelBinder {
       if (quantity == Quantity::count || index(quantity) >= state_capacity) {
         return fail(Code::unknown_quantity, "",
                     "number " + std::to_string(index(quantity)) +
-                        " among the recorded quantities is no quantity; quantity_named returns "
+                        " among the recorded quantities is not a quantity; quantity_named returns "
                         "Quantity::count for an unknown name: correct the name");
       }
       bound_.recorded_.set(index(quantity));

@@ -176,9 +176,9 @@ struct LamsStaticDefect {
   }
 };
 
-/// True if the laser has its lock: its delta-p differs from that of the model, or from zero if the model has
-/// none, by at most three tenths of the dynamic pressure (`max_lams_departure`), which is more than any
-/// static defect. False if one of them is missing.
+/// True if the laser has its lock: its delta-p differs from delta-p of the model, or from zero if the model
+/// has no delta-p, by at most three tenths of the dynamic pressure (`max_lams_departure`), which is more than
+/// any static defect. False if one of them is missing.
 template <class S>
 auto has_laser_lock(const State<S>& state) {
   const S& defect = state[Quantity::static_defect];
