@@ -473,7 +473,7 @@ void add_notes_on_gps(const ChosenReferences& references, bool separates_atmosph
   }
 }
 
-/// First lines: the mean correction of each model, and the sign of what follows.
+/// First lines: the mean correction of each model, and the sign of the following values.
 void print_levels(const ComparisonWithGps& result) {
   for (const auto& [name, level] : result.levels) {
     if (level.standard_error < max_level_error)

@@ -184,7 +184,7 @@ void say_notes(Notes notes, std::size_t max_notes) {
   }
   bool is_cut = false;  // a note before
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
-    // A note begins with what is wrong or what to do: complete clauses stay if the first one fits.
+    // A note begins with the fault or the action: complete clauses stay if the first one fits.
     const std::string note = format_note(notes[i]);
     const bool is_short = bytes_of(note, max_width) == note.size();
     std::string_view line = note;
