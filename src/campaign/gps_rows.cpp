@@ -7,6 +7,7 @@
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/low_pass.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -277,12 +278,18 @@ Angles angles_at(const FlightMotion& motion, const Series& heading, const Series
   return angles;
 }
 
-// Height above some level, m: from GPS, otherwise from the pressure.
+// Height above some level, m: by GPS; where it is missing, the pressure altitude plus the D-value of the
+// last height by GPS, before the first one that of the first.
 Series heights(const FlightSamples& samples, const Air& air) {
   Series z = samples.motion.altitude;
   z.resize(air.pressure.size(), nan);
+  Series d_values;
+  for (std::size_t i = 0; i < z.size(); ++i) d_values.push_back(z[i] - pressure_altitude(air.pressure[i]));
+  const auto first = std::find_if(d_values.begin(), d_values.end(), [](double d) { return !std::isnan(d); });
+  double d_value = first != d_values.end() ? *first : 0.0;
   for (std::size_t i = 0; i < z.size(); ++i) {
-    if (std::isnan(z[i])) z[i] = 44330.8 * (1.0 - std::pow(air.pressure[i] / 1013.25, 0.19026));
+    if (!std::isnan(d_values[i])) d_value = d_values[i];
+    if (std::isnan(z[i])) z[i] = pressure_altitude(air.pressure[i]) + d_value;
   }
   return z;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
@@ -16,35 +18,46 @@ constexpr std::size_t min_flights = 8;  // minimum number for omitting whole fli
 constexpr double part_count = 20.0;     // otherwise number of parts of all flights together
 constexpr double min_part = 120.0;      // s
 
-/// Flights, or parts of flights, omitted one at a time: blocks are numbered per flight, after those of the
-/// flights before it.
+/// Flights with bins, or parts of them, omitted one at a time: blocks are numbered per flight, after those of
+/// the flights before it.
 class Blocks {
  public:
   explicit Blocks(FitFlights& flights)
-      : spans_(flights.share().of_each_flight<std::pair<double, double>>([&](std::size_t flight) {
-          const std::vector<double>& time = flights.bins(flight).time();
-          return time.empty() ? std::pair(0.0, 0.0) : std::pair(time.front(), time.back() - time.front());
+      : spans_(flights.share().of_each_flight<Span>([&](std::size_t flight) -> Span {
+          for (const FitFlights* const each : flights.joint()) {
+            const std::vector<double>& time = each->bins(flight).time();
+            if (!time.empty()) return std::pair(time.front(), time.back() - time.front());
+          }
+          return std::nullopt;
         })) {
     double all = 0.0;
-    for (const auto& [begin, length] : spans_) all += length;
-    if (spans_.size() < min_flights) length_ = std::max(all / part_count, min_part);
+    std::size_t used = 0;
+    for (const Span& span : spans_) {
+      all += span ? span->second : 0.0;
+      used += span ? 1 : 0;
+    }
+    if (used < min_flights) length_ = std::max(all / part_count, min_part);
     for (std::size_t flight = 0; flight < spans_.size(); ++flight) count_ += count(flight);
   }
 
   /// Number of blocks of all flights, and of one flight.
   std::size_t count() const { return count_; }
   std::size_t count(std::size_t flight) const {
-    return 1 + static_cast<std::size_t>(spans_[flight].second / length_);
+    const Span& span = spans_[flight];
+    return span ? 1 + static_cast<std::size_t>(span->second / length_) : 0;
   }
 
+  /// Block of a bin within its flight. @param time middle of the bin, s
   std::size_t operator()(std::size_t flight, double time) const {
-    const double position = std::max((time - spans_[flight].first) / length_, 0.0);
+    const double position = std::max((time - spans_[flight]->first) / length_, 0.0);
     return std::min(static_cast<std::size_t>(position), count(flight) - 1);
   }
 
  private:
-  std::vector<std::pair<double, double>> spans_;  // begin and duration of each flight, s
-  double length_ = infinity;                      // s
+  using Span = std::optional<std::pair<double, double>>;  // begin and duration, s; empty without bins
+
+  std::vector<Span> spans_;   // one for each flight
+  double length_ = infinity;  // s
   std::size_t count_ = 0;
 };
 

@@ -16,7 +16,7 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
 /// Reasons not to trust a fit, one sentence each: residuals vary more than delta-p itself; outliers are
 /// consecutive, which indicates a missing effect; too many outliers, so that the loss may hide a missing
-/// effect; or assumed slow drift may be a missing effect.
+/// effect; or the rms residual is more than 2 % above that of plain least squares.
 std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRun& longest);
 
 /// Warnings if the jackknife contradicts the stated errors, or if stages do not converge.

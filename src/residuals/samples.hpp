@@ -36,8 +36,8 @@ void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, doub
 /// @param samples with static pressure and airspeed @param min_airspeed m/s; slower samples are not used
 Notes contradicting_signs(const FlightSamples& samples, double min_airspeed);
 
-/// Text that is identical for two models with the same inputs from a flight: variables and units, and the
-/// inputs of its effects. The coefficients of the effects count only if a column depends on one of them
+/// Text that is identical for two models with the same inputs from a flight: variables, units, and the
+/// quantities that the chain needs. Law and coefficients count only if a column depends on them
 /// (`find_moving_columns`, `airspeed_along_beam`).
 /// @throws Error if the model cannot be used on its roles
 std::string inputs_of(const ModelDefinition& model, bool with_laser);

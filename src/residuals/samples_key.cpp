@@ -25,26 +25,25 @@ std::string text_of(const UserIntervals& intervals) {
 std::string inputs_of(const ModelDefinition& file, bool with_laser) {
   const Model& model = file.model;
   const Chain chain = chain_of(model, roles_of(file, with_laser));
-  std::string text = fmt::format("{}|{}|{}|{}|{}|{}", with_laser, model.aircraft, file.law.valid_from,
-                                 file.law.valid_to, file.roles_from, model.moist);
+  std::string text = fmt::format("{}|{}|{}|{}|{}|{}|", with_laser, model.aircraft, file.law.valid_from,
+                                 file.law.valid_to, file.roles_from, fmt::join(chain.extra_names(), ","));
+  for (std::size_t i = 0; i < state_capacity; ++i) text += chain.needs(static_cast<Quantity>(i)) ? '1' : '0';
   for (const auto& [role, variable] : file.variables)
     text += fmt::format("|{}={}", static_cast<int>(role), variable);
   for (const auto& [role, unit] : file.units) text += fmt::format("|{}:{}", static_cast<int>(role), unit);
-  text += fmt::format("|{},{},{}|{}|{},{},{},{}", model.lams.elevation, model.lams.azimuth,
-                      static_cast<int>(model.lams.approach), fmt::join(model.recovery.coefficients, ","),
-                      model.policy.taper_below, model.policy.taper_power, model.policy.minimum,
-                      model.policy.min_dynamic_pressure);
+  if (!chain.derives(Quantity::airspeed_rate) && !chain.derives(Quantity::wetness)) return text;
+  // The column depends on the law.
+  text += fmt::format("|{},{}|{}|{}|{},{},{},{}", model.lams.elevation, model.lams.azimuth, model.moist,
+                      fmt::join(model.recovery.coefficients, ","), model.policy.taper_below,
+                      model.policy.taper_power, model.policy.minimum, model.policy.min_dynamic_pressure);
   for (const RadomeCalibration& radome : {model.attack_radome, model.sideslip_radome})
     text += fmt::format("|{},{},{}", radome.offset, radome.slope, radome.slope_mach);
-  const bool with_parameters = chain.derives(Quantity::airspeed_rate) || chain.derives(Quantity::wetness);
   for (const ModelEffect& effect : model.effects) {
-    text += fmt::format("|{}:{}:{}:{}:{},{}", effect.id, effect.formula,
+    text += fmt::format("|{}:{}:{}:{}:{},{}:{}", effect.id, effect.formula,
                         fmt::join(effect.parameter_names, ","), static_cast<int>(effect.location),
-                        effect.scaling.static_pressure, effect.scaling.dynamic_pressure);
-    if (with_parameters) text += fmt::format(":{}", fmt::join(effect.parameters, ","));
+                        effect.scaling.static_pressure, effect.scaling.dynamic_pressure,
+                        fmt::join(effect.parameters, ","));
   }
-  for (const EffectLocation location : model.additions)
-    text += fmt::format("|@{}", static_cast<int>(location));
   return text;
 }
 

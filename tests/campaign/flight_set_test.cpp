@@ -144,6 +144,9 @@ TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
   const auto first = samples(model);
   model.model.effects.front().parameters.front() += 0.001;
   EXPECT_EQ(samples(model), first) << "coefficients change no column";
+  ModelDefinition shorter = model;
+  shorter.model.effects.erase(shorter.model.effects.begin());
+  EXPECT_EQ(samples(shorter), first) << "the remaining effects read the same quantities";
   ModelDefinition other = model;
   other.variables.erase(Quantity::vapor_pressure);
   EXPECT_NE(samples(other), first);
@@ -154,6 +157,19 @@ TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
   const FlightSet forgetful({path}, {TimestampAlignment::begin, &serial_communicator(), 0});
   EXPECT_NE(forgetful.samples(0, model, *lams_reference(), mask),
             forgetful.samples(0, model, *lams_reference(), mask));
+}
+
+// The samples of a model without the domain were given to the model with it.
+TEST_F(FlightSets, SamplesContainTheQuantitiesOfTheDomain) {
+  ModelDefinition model = test::laser_model();
+  model.variables[Quantity::roll] = "ROLL";
+  const FlightSet flights{test::short_flight()};
+  const auto has_roll = [&] {
+    return flights.samples(0, model, *lams_reference(), {})->model.find(Quantity::roll) != nullptr;
+  };
+  EXPECT_FALSE(has_roll());
+  model.model.domain.push_back({"roll", -20.0, 20.0});
+  EXPECT_TRUE(has_roll());
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 #include "support/short_flight.hpp"
 
@@ -76,4 +78,27 @@ TEST_F(GpsRowsOfCircles, OneMissingSampleDoesNotBreakTheHeight) {
   EXPECT_EQ(breaks(), complete);
   for (std::size_t i = first; i < first + 30; ++i) humidity[i] = std::nan("");
   EXPECT_EQ(breaks(), complete + 1);
+}
+
+// The pressure altitude alone, hundreds of metres from the height by GPS, was a jump of the height at both
+// ends of a gap.
+TEST_F(GpsRowsOfCircles, GapInTheGpsHeightIsNotAJumpOfTheHeight) {
+  pcor::FlightSamples samples = this->samples(*pcor::wind_reference(model));
+  for (double& height : samples.motion.altitude) height += 300.0;
+  std::vector<std::size_t> used(samples.time.size());
+  std::iota(used.begin(), used.end(), 0);
+  const auto rise = [&] {
+    return gps_rows(GpsKind::wind, samples, model, used, parameters.data(), {0, 1, 2}).rise;
+  };
+  const std::vector<double> complete = rise();
+  const std::vector<double> height = samples.motion.altitude;
+  const std::size_t middle = height.size() / 2;
+  for (const auto& [first, last] : {std::pair(middle, middle + 10), std::pair(std::size_t{0}, middle)}) {
+    samples.motion.altitude = height;
+    std::fill(samples.motion.altitude.begin() + static_cast<std::ptrdiff_t>(first),
+              samples.motion.altitude.begin() + static_cast<std::ptrdiff_t>(last), std::nan(""));
+    const std::vector<double> with_gap = rise();
+    // The noise of the pressure changes its altitude by up to 4 m in a second; the jump was 370 m.
+    for (std::size_t i = middle - 60; i < middle + 60; ++i) EXPECT_NEAR(with_gap[i], complete[i], 20.0) << i;
+  }
 }

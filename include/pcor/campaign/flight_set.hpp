@@ -95,7 +95,8 @@ class FlightSet {
   /// @throws Error of the first flight that cannot be opened, on every rank
   std::vector<FlightOutline> outlines() const;
 
-  /// Names of the variables of each flight. The first call is collective. @throws Error as `outlines`
+  /// Names of the variables of each flight, on every rank. Every call is collective. @throws Error as
+  /// `outlines`, or if the flight is samples in memory
   std::vector<std::vector<std::string>> variables() const;
 
   /// Title for models, e.g. "GOTEX rf06 2004-02-18 and 2 more". @throws Error as `outlines`
