@@ -26,7 +26,7 @@ std::optional<GpsKind> gps_kind(const Reference& reference);
 struct GpsNuisance {
   std::string_view name;
   double deviation;
-  std::string_view same_as = {};  ///< coefficient of the catalogue for the same error
+  std::string_view same_as = {};  ///< coefficient for the same error (`corrects_error_of`)
 };
 
 inline constexpr std::array<GpsNuisance, 11> gps_nuisances{{

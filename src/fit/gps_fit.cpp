@@ -15,6 +15,7 @@
 #include "campaign/gps_system.hpp"
 #include "campaign/model_parameters.hpp"
 #include "fit/fit_task.hpp"
+#include "model_io/sensor_doubt.hpp"
 #include "numerics/decompositions.hpp"
 
 namespace pcor::internal {
@@ -75,8 +76,9 @@ class GpsSolver {
     // A fitted coefficient replaces the nuisance for the same error.
     constexpr double held = 1e-3;  // fraction of its prior deviation; no result depends on it
     for (std::size_t n = 0; n < gps_nuisances.size(); ++n) {
-      if (std::any_of(requested_.begin(), requested_.end(),
-                      [&](std::size_t p) { return task_.parameters[p].name == gps_nuisances[n].same_as; }))
+      if (std::any_of(requested_.begin(), requested_.end(), [&](std::size_t p) {
+            return corrects_error_of(task_.parameters[p].name, gps_nuisances[n].same_as);
+          }))
         nuisance_deviation_[as_index(n)] *= held;
     }
   }
@@ -238,7 +240,7 @@ class GpsSolver {
         prior_deviation_.asDiagonal() *
         (matrix_.topLeftCorner(count_, count_) - cross.transpose() * nuisances.ldlt().solve(cross)) *
         prior_deviation_.asDiagonal();
-    const SymmetricEigen eigen = symmetric_eigen(information);
+    const SymmetricEigen eigen(information);
     std::vector<Eigen::Index> known;
     std::vector<Eigen::Index> unknown;
     std::vector<Eigen::Index> weak;

@@ -1,8 +1,10 @@
 #include "model_io/sensor_doubt.hpp"
 
+#include <algorithm>
+
 #include <pcor/effects/catalogue.hpp>
 
-#include "model_io/calibration.hpp"
+#include "model_io/model_names.hpp"
 
 namespace pcor::internal {
 std::string SensorDoubt::name() const {
@@ -20,15 +22,22 @@ bool has_doubt(std::string_view coefficient) {
   return false;
 }
 
+bool corrects_error_of(std::string_view coefficient, std::string_view other) {
+  return coefficient == other || (coefficient == "temp-calibration.a0" && other == "temp-offset.offset");
+}
+
 std::vector<SensorDoubt> doubts_of(const ModelDefinition& model,
                                    const std::vector<std::string_view>& effects) {
+  const std::vector<NamedParameter> coefficients = named_parameters(model.model);
   std::vector<SensorDoubt> doubts;
   for (const std::string_view id : effects) {
-    if (has_effect(model, id) || (id == "temp-offset" && has_effect(model, calibration_id))) continue;
     const EffectInfo& info = *effect_named(id);
     for (std::size_t p = 0; p < parameter_capacity; ++p) {
       if (!(info.parameters[p].calibration_uncertainty > 0.0)) continue;
       SensorDoubt doubt{std::string(id), p, info.parameters[p].calibration_uncertainty};
+      if (std::any_of(coefficients.begin(), coefficients.end(),
+                      [&](const NamedParameter& each) { return corrects_error_of(each.name, doubt.name()); }))
+        continue;
       const auto stated = model.uncertainty.sensors.find(doubt.name());
       doubt.is_usual = stated == model.uncertainty.sensors.end();
       if (!doubt.is_usual) doubt.size = stated->second;

@@ -30,9 +30,13 @@ inline const std::vector<std::string_view> dynamic_calibration{"qcf-zero"};
 /// (`ParameterInfo::calibration_uncertainty`).
 bool has_doubt(std::string_view coefficient);
 
-/// Uncertainties of these effects: the defaults, or the values in `[uncertainty]` of the model. If the model
-/// has an effect, its stated uncertainty applies and no default is added. A calibration of the thermometer
-/// (temp-calibration) represents its offset.
+/// Whether a coefficient corrects the same error of a sensor as another one that has a default uncertainty:
+/// the same coefficient, or the constant of temp-calibration, which corrects the offset of the thermometer.
+bool corrects_error_of(std::string_view coefficient, std::string_view other);
+
+/// Uncertainties of these effects: the defaults, or the values in `[uncertainty]` of the model. If a
+/// coefficient of the model corrects the error (`corrects_error_of`), its stated uncertainty applies and no
+/// default is added.
 std::vector<SensorDoubt> doubts_of(const ModelDefinition& model,
                                    const std::vector<std::string_view>& effects);
 

@@ -217,7 +217,7 @@ std::vector<std::array<NoisePoint, 2>> standard_deviations_of_noise(const std::v
       rises(i, j) = rises(j, i) = 0.5 * (at(both).rise - rises(i, i) - rises(j, j));
     }
   }
-  const SymmetricEigen axes = symmetric_eigen(rises);
+  const SymmetricEigen axes(rises);
   std::vector<std::array<NoisePoint, 2>> result;
   for (Eigen::Index k = 0; k < step.size(); ++k) {
     const double curvature = std::max(axes.eigenvalues()[k], min_curvature);
@@ -352,25 +352,13 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
 }
 
 MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
-                               const HeightPrior& prior, const HeightNoise& start, const Workers& workers,
-                               const HeldCoefficient* held) {
+                               const HeightPrior& prior, const HeightNoise& start, const Workers& workers) {
   MostLikely best;
   best.deviance = std::numeric_limits<double>::infinity();
   const Cost deviance = [&](const std::vector<double>& x) {
     const HeightNoise noise = as_noise(x);
     const HeightEquations equations = height_equations(records, noise, prior, workers);
-    double value = 0.0;
-    if (held == nullptr) {
-      value = restricted_deviance(equations, terms);
-    } else {
-      // The other coefficients follow the held one.
-      const Eigen::MatrixXd covariance = equations.covariance(terms);
-      Eigen::VectorXd a = equations.best(terms);
-      a += covariance.col(held->term) * ((held->value - a[held->term]) / covariance(held->term, held->term));
-      // The other coefficients are free: their information is the total without the fixed one's.
-      value = equations.deviance_at(a) + equations.log_information(terms) +
-              std::log(covariance(held->term, held->term));
-    }
+    const double value = restricted_deviance(equations, terms);
     if (!std::isfinite(value)) return std::numeric_limits<double>::max();
     if (value < best.deviance) {
       best.deviance = value;
@@ -386,14 +374,13 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(x.size()));
     search.set_lower_bounds(logarithms_of(&Searched::minimum));
     search.set_upper_bounds(logarithms_of(&Searched::maximum));
-    search.set_initial_step(held == nullptr ? 1.0 : 0.3);
+    search.set_initial_step(1.0);
     // If the slope of isobars and the walk are nearly confounded the valley is flat: a small gain of one
     // trial does not indicate its minimum, but trials that are close together do.
     search.set_xtol_abs(1e-3);
     search.set_maxeval(1000);
     minimize_objective(search, deviance, x);
     x = as_logarithms(best.noise);
-    if (held != nullptr) break;
   }
   return best;
 }
@@ -413,7 +400,7 @@ Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, 
   // In standard errors, without what would make any smaller.
   const auto& root = factor.matrixL();
   const Eigen::MatrixXd scaled = root.solve(root.solve(more).transpose());
-  const SymmetricEigen axes = symmetric_eigen(0.5 * (scaled + scaled.transpose()));
+  const SymmetricEigen axes(0.5 * (scaled + scaled.transpose()));
   const Eigen::MatrixXd larger =
       root * (axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal());
   return covariance + larger * larger.transpose();

@@ -97,17 +97,10 @@ struct MostLikely {
   double deviance = 0.0;  ///< -2 ln of the restricted likelihood
 };
 
-/// A coefficient that does not follow the others.
-struct HeldCoefficient {
-  Eigen::Index term = 0;
-  double value = 0.0;
-};
-
-/// Maximum-likelihood noise, with the coefficients of the first `terms` powers optimised, or one of them
-/// fixed. NLopt (BOBYQA) searches over the logarithms of the noise, from `start`.
+/// Maximum-likelihood noise, with the coefficients of the first `terms` powers optimised. NLopt (BOBYQA)
+/// searches over the logarithms of the noise, from `start`.
 MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
-                               const HeightPrior& prior, const HeightNoise& start, const Workers& workers,
-                               const HeldCoefficient* held = nullptr);
+                               const HeightPrior& prior, const HeightNoise& start, const Workers& workers);
 
 /// Covariance of the best coefficients of the first `terms` powers, including the uncertainty of the noise:
 /// the mean of their covariance C over likely noises, and the variance of their best values a,
@@ -121,7 +114,7 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
 /// Statist. Soc. B 71 (2009), with points only on the axes; similar to Kenward & Roger, Biometrics 53 (1997).
 /// About 40 passes over the flights.
 ///
-/// @param likely what `maximise_likelihood` found for the same flights, terms and prior, with none held
+/// @param likely what `maximise_likelihood` found for the same flights, terms and prior
 Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,
                                       const HeightPrior& prior, const MostLikely& likely,
                                       const Workers& workers);

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include <pcor/base/error.hpp>
-#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/constants.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include "numerics/median.hpp"
@@ -195,26 +195,15 @@ bool has_ground_velocity(const FlightAir& air, std::size_t i) {
   return !air.east_speed.empty() && !std::isnan(air.east_speed[i] + air.north_speed[i]);
 }
 
-/// Velocity through the air to the east and north, m/s; NaN if unknown.
-Eigen::Vector2d air_velocity(const FlightAir& air, std::size_t i) {
+/// Ground velocity to the east and north, m/s; if missing, velocity through the air from airspeed and
+/// heading. Without any heading or track, the airspeed counts as northward. NaN if unknown.
+Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
+  if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
+  if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
   const std::vector<double>& headings = air.samples->motion.heading;
   if (headings.empty() || air.airspeed.empty()) return {nan, nan};
   const double heading = headings[i] * constants::radians_per_degree;
   return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
-}
-
-/// Ground velocity to the east and north, m/s; if missing, velocity through the air from airspeed and
-/// heading. Without any heading or track, the airspeed counts as northward.
-Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
-  if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
-  if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
-  return air_velocity(air, i);
-}
-
-/// Wind to the east and north, m/s; NaN if unknown.
-Eigen::Vector2d wind_at(const FlightAir& air, std::size_t i) {
-  if (air.east_speed.empty()) return {nan, nan};
-  return Eigen::Vector2d(air.east_speed[i], air.north_speed[i]) - air_velocity(air, i);
 }
 
 /// Displacement from the first sample, m, to the east and north. Missing velocities are replaced by the last
@@ -258,10 +247,6 @@ class BlockMeans {
     block_.height += air_.geopotential_height[i];
     block_.pressure += air_.pressure[i];
     block_.temperature += air_.temperature[i] - constants::ice_point;
-    const double turning = coriolis_parameter(air_.latitude[i]) / constants::standard_gravity;
-    const Eigen::Vector2d wind = wind_at(air_, i);
-    block_.slope_east += turning * wind[1];
-    block_.slope_north -= turning * wind[0];
   }
 
   std::size_t first() const { return first_; }
@@ -271,7 +256,7 @@ class BlockMeans {
     HeightBlock result = block_;
     const auto n = static_cast<double>(block_.samples);
     for (double* value : {&result.time, &result.excess, &result.east, &result.north, &result.height,
-                          &result.pressure, &result.temperature, &result.slope_east, &result.slope_north})
+                          &result.pressure, &result.temperature})
       *value /= n;
     result.columns /= n;
     result.time += air_.time()[first_];
@@ -368,13 +353,11 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   double highest = -lowest;
   record.min_temperature = lowest;
   record.max_temperature = highest;
-  record.has_wind = true;
   for (std::size_t i = 0; i < record.blocks.size(); ++i) {
     HeightBlock& block = record.blocks[i];
     if (i == 0) block.starts_segment = true;
     record.segments += block.starts_segment ? 1 : 0;
     record.samples += block.samples;
-    record.has_wind = record.has_wind && !std::isnan(block.slope_east + block.slope_north);
     lowest = std::min(lowest, block.height);
     highest = std::max(highest, block.height);
     record.min_temperature = std::min(record.min_temperature, block.temperature);

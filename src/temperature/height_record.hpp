@@ -50,14 +50,12 @@ struct HeightBlock {
   double temperature = 0.0;     ///< uncorrected, degC
   double metres_per_hpa = 0.0;  ///< R_a T/(g p): thickness of a layer of 1 hPa, m/hPa
   double climb = 0.0;           ///< m/s
-  double slope_east = 0.0;  ///< slope of isobaric surfaces from the geostrophic wind, 1; NaN without a wind
-  double slope_north = 0.0;
   std::size_t samples = 0;
 
   template <class Archive>
   void serialize(Archive& archive) {
     archive(starts_segment, time, length, excess, columns, east, north, height, pressure, temperature,
-            metres_per_hpa, climb, slope_east, slope_north, samples);
+            metres_per_hpa, climb, samples);
   }
 };
 
@@ -79,7 +77,6 @@ struct HeightRecord {
   std::size_t missing_heights = 0;  ///< samples in the air without GPS height
   std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
   WayKnown way = WayKnown::over_ground;
-  bool has_wind = false;
   double slope_left = 1.0;       ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
   bool returns = false;          ///< ends within 50 km of its start
   double min_temperature = 0.0;  ///< degC
@@ -93,8 +90,7 @@ struct HeightRecord {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(name, blocks, segments, samples, height_steps, height_spikes, missing_heights, unknown_ways, way,
-            has_wind, slope_left, returns, min_temperature, max_temperature, rms_of_unit, law_variance,
-            notes);
+            slope_left, returns, min_temperature, max_temperature, rms_of_unit, law_variance, notes);
   }
 };
 

@@ -6,14 +6,12 @@
 #include <map>
 #include <vector>
 
-#include <pcor/physics/geodesy.hpp>
-
 namespace pcor {
 namespace {
 
 // In the order of the enumeration.
-constexpr std::array<std::string_view, 6> slope_names{"fitted",        "none",         "level-legs",
-                                                      "climb-descent", "whole-flight", "geostrophic"};
+constexpr std::array<std::string_view, 5> slope_names{"fitted", "none", "level-legs", "climb-descent",
+                                                      "whole-flight"};
 
 }  // namespace
 
@@ -37,7 +35,7 @@ constexpr double usual_slope = 1e-4;    // 10 m in 100 km; memo after eq. 24
 constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
 
 // Estimates use surfaces that are crossed again a few 10 km away, with a scatter of metres: an error of about
-// 3 m in 100 km, a third of the usual slope. A wind is out of balance by a similar fraction.
+// 3 m in 100 km, a third of the usual slope.
 constexpr double slope_left_by_estimates = 1.0 / 3.0;
 
 /// Location with a known height of an isobaric surface, and the surface or leg that it belongs to.
@@ -110,30 +108,13 @@ void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
         "included");
   }
   if (option == IsobarSlope::fitted) return;
-  if (option == IsobarSlope::geostrophic && !record.has_wind) {
-    record.notes.emplace_back(
-        "no wind, because heading, airspeed or ground velocity is not recorded: the slope of isobars is "
-        "fitted by the likelihood, as with --slope fitted");
-    return;
-  }
-  if (option != IsobarSlope::geostrophic && record.way == WayKnown::length) {
+  if (record.way == WayKnown::length) {
     record.notes.emplace_back(
         "no slope of isobars can be estimated, because directions are unknown: it is fitted by the "
         "likelihood, as with --slope fitted");
     return;
   }
   record.slope_left = slope_left_by_estimates;
-  if (option == IsobarSlope::geostrophic) {
-    double rise = 0.0;
-    for (std::size_t i = 1; i < record.blocks.size(); ++i) {
-      HeightBlock& here = record.blocks[i];
-      const HeightBlock& before = record.blocks[i - 1];
-      rise += 0.5 * ((before.slope_east + here.slope_east) * (here.east - before.east) +
-                     (before.slope_north + here.slope_north) * (here.north - before.north));
-      here.excess -= rise;
-    }
-    return;
-  }
   const Eigen::Vector2d slope = estimate_isobar_slope(record, option);
   for (HeightBlock& block : record.blocks) block.excess -= slope[0] * block.east + slope[1] * block.north;
 }

@@ -13,10 +13,9 @@ namespace pcor::internal {
 /// pressure with the measured temperature. The direction across a straight flight is assumed level.
 Eigen::Vector2d estimate_isobar_slope(const HeightRecord& record, IsobarSlope option);
 
-/// Subtracts the height change along the track due to isobars that are not level: from an estimate, or from
-/// the geostrophic wind at every position. The remaining fraction of the usual slope is in `slope_left`, for
-/// the likelihood. No change for `none` and `fitted`, or if the required variables are not recorded, with a
-/// note.
+/// Subtracts the estimated height change along the track due to isobars that are not level. The remaining
+/// fraction of the usual slope is in `slope_left`, for the likelihood. No change for `none` and `fitted`, or,
+/// with a note, if directions are unknown.
 void take_off_isobar_slope(HeightRecord& record, IsobarSlope option);
 
 }  // namespace pcor::internal

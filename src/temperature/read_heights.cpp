@@ -58,7 +58,7 @@ std::string remedy(const ModelDefinition& model, const Flight& flight) {
 std::vector<Eigen::VectorXd> standard_deviations(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const SymmetricEigen axes = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  const SymmetricEigen axes(inverse.asDiagonal() * covariance * inverse.asDiagonal());
   std::vector<Eigen::VectorXd> changes;
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
     if (axes.eigenvalues()[k] > 0.0)

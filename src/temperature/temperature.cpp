@@ -16,7 +16,6 @@
 #include <pcor/effects/temp_calibration.hpp>
 #include "model_io/calibration.hpp"
 #include "numerics/median.hpp"
-#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/flight_partition.hpp"
 #include "temperature/degrees.hpp"
@@ -203,7 +202,6 @@ class TemperatureCalibration {
       result_.per_hpa.push_back(per_hpa[k]);
       std::vector<double>& row = result_.covariance.emplace_back();
       for (Eigen::Index j = 0; j < n; ++j) row.push_back(covariance(k, j) + unseen(k, j));
-      result_.profile.push_back(profile_interval(k, std::sqrt(covariance(k, k)), unseen(k, k)));
     }
     result_.gps_noise = noise.white;
     result_.gps_wander = noise.wander;
@@ -293,29 +291,6 @@ class TemperatureCalibration {
     found.standard_error = std::sqrt(covariance(error, error));
     found.size = prior_.sizes[error];
     found.range = std::abs(found.change) * range_of(error);
-  }
-
-  /// Values below and above at which -2 ln L, with the noise and the other coefficients optimised, is 1 above
-  /// its minimum, including the variance that the likelihood cannot detect.
-  std::array<double, 2> profile_interval(Eigen::Index term, double error, double unseen) const {
-    const double best = unknowns_[term];
-    const auto deviance_at = [&](double value) {
-      const HeldCoefficient held{term, value};
-      return maximise_likelihood(records_, as_index(terms_), prior_, most_likely_.noise, workers_, &held)
-          .deviance;
-    };
-    const double minimum = deviance_at(best);
-    const auto limit = [&](double side) {
-      double reach = error;
-      for (int step = 0; step < 3; ++step) {
-        const double rise = deviance_at(best + side * reach) - minimum;
-        if (!(rise > 0.05) || !std::isfinite(rise)) return nan;
-        reach /= std::sqrt(rise);
-        if (std::abs(rise - 1.0) < 0.02) break;
-      }
-      return best + side * std::sqrt(reach * reach + unseen);
-    };
-    return {limit(-1.0), limit(1.0)};
   }
 
   /// Constant that least squares adds to the correction, after removal of the other errors, with the slopes

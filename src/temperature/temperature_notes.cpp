@@ -106,11 +106,6 @@ Notes method_notes(const TemperatureOptions& options, bool attack_is_unknown) {
         "isobars are assumed to be level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
         "(--slope fitted)");
   }
-  if (options.slope == IsobarSlope::geostrophic) {
-    notes.emplace_back(
-        "the slope of isobars assumes geostrophic balance: friction, curvature and changes of the wind "
-        "violate it, which limits the accuracy of the coefficients");
-  }
   return notes;
 }
 

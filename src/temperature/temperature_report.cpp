@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include <pcor/base/utc.hpp>
@@ -23,17 +24,15 @@ ReportTable coefficient_table(const TemperatureResult& result) {
   ReportTable table{
       "Coefficients",
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
-      "likelihood, averaged over likely noise models; the interval is the profile likelihood at e^(-1/2), "
-      "with the noise re-optimised for each value. Least squares on height, as in Cooper (2012), assumes "
+      "likelihood, averaged over likely noise models. Least squares on height, as in Cooper (2012), assumes "
       "independent heights and level or known isobars: its errors are too small. " +
           pressure_error_text(result) + ".",
-      {"", "likelihood", result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "interval",
+      {"", "likelihood", result.pressure_error > 0.0 ? "std. error" : "std. error, noise only",
        "least squares", "its error", "per 1 hPa of static pressure", "unit"},
       {}};
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
     table.rows.push_back({fmt::format("a{}", k), fmt::format("{:+.5g}", result.likelihood.coefficients[k]),
                           fmt::format("{:.2g}", result.likelihood.standard_errors[k]),
-                          profile_text(result.profile[k]),
                           fmt::format("{:+.5g}", result.least_squares.coefficients[k]),
                           fmt::format("{:.2g}", result.least_squares.standard_errors[k]),
                           fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_unit(k)});
@@ -154,13 +153,6 @@ std::string pressure_error_text(const TemperatureResult& result) {
       "Errors include noise only: a constant static-pressure bias of {:g} hPa in all flights would change "
       "{}; --pressure-error {:g} includes it",
       usual, moved, usual);
-}
-
-std::string profile_text(const std::array<double, 2>& ends) {
-  const auto end = [](double value) {
-    return std::isnan(value) ? std::string("open") : fmt::format("{:+.4g}", value);
-  };
-  return fmt::format("{} to {}", end(ends[0]), end(ends[1]));
 }
 
 Report temperature_report(const TemperatureResult& result) {

@@ -50,6 +50,8 @@ TEST(SensorDoubt, ModelPriorOverridesTheCatalogue) {
   // An effect of the model defines the uncertainty of the sensor.
   EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-offset\"\n")),
               ElementsAre("recovery-factor.da"));
+  EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-calibration\"\n")),
+              ElementsAre("recovery-factor.da"));
   EXPECT_THROW(thermometer_of("[uncertainty]\n\"static-constant.a0\" = 0.05\n"), Error);
 }
 

@@ -180,19 +180,6 @@ TEST(HeightRecord, ArchivedStepsReplacePressureAndHumidity) {
     EXPECT_NEAR(direct.blocks[i].excess, archived.blocks[i].excess, 1e-6);  // rounding
 }
 
-TEST(HeightRecord, GeostrophicSlopeHasTheCorrectSign) {
-  FlightAir air = made::air({});
-  // A wind from the west of 10 m/s: in the north, high pressure lies to its right, in the south.
-  for (double& speed : air.east_speed) speed += 10.0;
-  const HeightRecord record = record_of(air);
-  ASSERT_TRUE(record.has_wind);
-  for (const HeightBlock& block : record.blocks) {
-    EXPECT_NEAR(block.slope_east, 0.0, 1e-9);
-    // f v/g at 40 degrees is 9.56e-5 for 10 m/s (just the memo's 10 m in 100 km).
-    EXPECT_NEAR(block.slope_north, -9.56e-5, 1e-7);
-  }
-}
-
 /// The same way, for rounding of sums over 200 km.
 void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
   ASSERT_EQ(one.blocks.size(), other.blocks.size());
@@ -210,7 +197,6 @@ TEST(HeightRecord, UsesAirspeedWithoutGroundSpeed) {
   air.north_speed.clear();
   const HeightRecord through_air = record_of(air);
   EXPECT_EQ(through_air.way, WayKnown::through_air);
-  EXPECT_FALSE(through_air.has_wind);
   expect_same_way(through_air, over_ground);
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "support/says.hpp"
@@ -71,33 +70,9 @@ TEST(IsobarSlope, ModesNoneAndFittedSubtractNoSlope) {
   }
 }
 
-TEST(IsobarSlope, GeostrophicWindRemovesTheSlope) {
-  made::AirPlan plan = sloping();
-  FlightAir air = made::air(plan);
-  // The wind that belongs to the slope: v = (g/f) dz/dx, u = -(g/f) dz/dy.
-  const double over = 9.80665 / pcor::coriolis_parameter(plan.latitude);
-  auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
-  for (std::size_t i = 0; i < air.size(); ++i) {
-    const double wind_east = -over * plan.slope_north;
-    const double wind_north = over * plan.slope_east;
-    // The way over the ground is unchanged: the aircraft heads into the wind.
-    const double through_east = air.east_speed[i] - wind_east;
-    const double through_north = air.north_speed[i] - wind_north;
-    air.airspeed[i] = std::hypot(through_east, through_north);
-    samples->motion.heading[i] =
-        std::atan2(through_east, through_north) / pcor::constants::radians_per_degree;
-  }
-  air.samples = samples;
-  HeightRecord record = height_record(air, {}, {});
-  const double before = range_of_excess(record);
-  take_off_isobar_slope(record, IsobarSlope::geostrophic);
-  // Slopes are taken at the middles of steps along a curved way: a per cent.
-  EXPECT_LT(range_of_excess(record), 0.02 * before);
-}
-
 TEST(IsobarSlope, EveryEstimateLeavesARemainder) {
-  for (const IsobarSlope option : {IsobarSlope::level_legs, IsobarSlope::climb_descent,
-                                   IsobarSlope::whole_flight, IsobarSlope::geostrophic}) {
+  for (const IsobarSlope option :
+       {IsobarSlope::level_legs, IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
     HeightRecord record = record_of(sloping());
     take_off_isobar_slope(record, option);
     EXPECT_GT(record.slope_left, 0.0);
@@ -112,17 +87,11 @@ TEST(IsobarSlope, UndeterminedSlopeIsLeftToTheLikelihood) {
   FlightAir air = made::air(sloping());
   air.east_speed.clear();
   air.north_speed.clear();
-  HeightRecord no_wind = height_record(air, {}, {});
-  const double before = range_of_excess(no_wind);
-  take_off_isobar_slope(no_wind, IsobarSlope::geostrophic);
-  EXPECT_EQ(no_wind.slope_left, 1.0);
-  EXPECT_EQ(range_of_excess(no_wind), before);
-  EXPECT_THAT(no_wind.notes, ElementsAre(pcor::test::Says("GGSPD"), pcor::test::Says("no wind")));
-
   auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
   samples->motion.heading.clear();
   air.samples = samples;
   HeightRecord no_directions = height_record(air, {}, {});
+  const double before = range_of_excess(no_directions);
   take_off_isobar_slope(no_directions, IsobarSlope::whole_flight);
   EXPECT_EQ(no_directions.slope_left, 1.0);
   EXPECT_EQ(range_of_excess(no_directions), before);

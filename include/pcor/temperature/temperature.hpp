@@ -4,7 +4,6 @@
 #include <pcor/fit/refit.hpp>
 #include <pcor/report/report.hpp>
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -21,8 +20,7 @@ enum class IsobarSlope {
   none,           ///< surfaces are assumed level
   level_legs,     ///< slope of the surface heights along level legs (memo ii)
   climb_descent,  ///< surfaces crossed by climbs and descents at different positions (memo iii)
-  whole_flight,   ///< all surfaces that the flight crosses more than once (memo iv)
-  geostrophic     ///< measured wind: f/g times the cross-track wind, for geostrophic balance
+  whole_flight    ///< all surfaces that the flight crosses more than once (memo iv)
 };
 
 std::string_view to_string(IsobarSlope slope);
@@ -205,10 +203,6 @@ struct TemperatureResult {
   double least_squares_add = 0.0;
   double least_squares_add_error = 0.0;
   std::vector<std::vector<double>> covariance{};  ///< covariance of the likelihood's coefficients
-  /// Lower and upper end of the profile likelihood at e^(-1/2), noise re-optimised at each value, including
-  /// the errors that the likelihood cannot detect; equal to value -+ standard error for a parabolic
-  /// likelihood.
-  std::vector<std::array<double, 2>> profile{};
   /// Corrections over the temperature range of the flights.
   std::vector<TemperatureCorrection> corrections{};
   std::vector<DegreeChoice> degrees{};
@@ -250,7 +244,6 @@ template <class Field>
 void describe(const TemperatureResult& self, Field& field) {
   describe(self.likelihood, field);
   field("covariance", self.covariance, "covariance of the coefficients", "product of the units");
-  field("profile", by_power(self.profile), "lower and upper end of the profile likelihood", power_units);
   field("sigma_m", self.likelihood.sigma, "noise of the GPS height in a sample, slow and fast");
   field("samples", self.samples, "number of heights");
   field("flights", self.flights, "heights of each flight");
@@ -352,9 +345,6 @@ std::string degree_name(int degree);
 
 /// The unit of coefficient a0, a1 or a2: "K", "1" or "1/K".
 std::string coefficient_unit(std::size_t power);
-
-/// Formats a profile range, e.g. "-0.5377 to -0.5301"; an undetermined end is "open".
-std::string profile_text(const std::array<double, 2>& ends);
 
 /// "-0.537 +- 0.012": the error with two significant digits, the value with as many decimals.
 std::string with_error(double value, double error, std::string_view plus_minus = "+-");
