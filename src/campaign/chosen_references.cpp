@@ -24,11 +24,10 @@ bool names_temperature(const ModelDefinition& model) {
          model.variables.count(Quantity::ambient_temperature) != 0;
 }
 
-/// Whether a flight has a pressure pair that the model does not use.
-bool has_other_pair(const Flight& flight, const ModelDefinition& model, const PressurePair& pair) {
+/// Whether a model uses neither pressure of a pair.
+bool is_other_pair(const ModelDefinition& model, const PressurePair& pair) {
   return pair.static_pressure != model.variables.at(Quantity::static_pressure) &&
-         pair.dynamic_pressure != model.variables.at(Quantity::dynamic_pressure) &&
-         has_values(flight, pair.static_pressure, "hPa") && has_values(flight, pair.dynamic_pressure, "hPa");
+         pair.dynamic_pressure != model.variables.at(Quantity::dynamic_pressure);
 }
 
 std::string why_no_height(const Flight& flight, const ModelDefinition& model) {
@@ -63,8 +62,10 @@ Allowed allowed_by(const Flight& flight, const ModelDefinition& model) {
   Allowed allowed;
   allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
   if (!allowed.laser) return allowed;
-  for (const PressurePair& pair : family_of(model, flight).measured) {
-    if (pair.static_pressure != filtered_and_late && has_other_pair(flight, model, pair))
+  const VariableNaming& family = family_of(model, flight);
+  for (const PressurePair& pair : family.measured) {
+    if (pair.static_pressure != filtered_and_late && is_other_pair(model, pair) &&
+        has_values(flight, family, pair))
       allowed.pairs.emplace_back(pair.static_pressure, pair.dynamic_pressure);
   }
   const auto in_flight = [&flight](const std::string& why) {

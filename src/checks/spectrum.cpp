@@ -201,8 +201,8 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
     result.finding += fmt::format(" (equivalent to {:.2f} m/s of airspeed)", floor.value / per_speed);
   result.finding += fmt::format("; over the last two octaves power varies as frequency to the {}: {}.",
                                 with_error(fall, ""), in_words(fall));
-  note_other_steps(
-      flights, spectrum.step, [](const CheckedFlight&) { return true; }, result.notes);
+  const auto has_series = [source](const CheckedFlight& flight) { return has_value(source->series(flight)); };
+  note_other_steps(flights, spectrum.step, has_series, result.notes);
   result.cannot_see =
       "The check cannot identify the noisy sensor: pressures, thermometer, laser and the air between laser "
       "and pitot tube add up. Noise of the transducers and small eddies are indistinguishable unless the "

@@ -305,101 +305,38 @@ class Look {
     return true;
   }
 
-  /// Where one of the two pressures is there, the other is what is requested.
+  /// The error; if one of the two pressures was found, its name and the next step.
   std::string what_pressures_lack(const Error& error) const {
     const bool has_static = evidence_.count("static_pressure") != 0;
     const bool has_dynamic = evidence_.count("dynamic_pressure") != 0;
     if (!roles_.empty() || has_static == has_dynamic) return error.what();
-    const auto& [there, requested] =
-        has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
+    const std::string found = has_static ? "static" : "dynamic";
+    const std::string missing = has_static ? "dynamic" : "static";
+    const RoleCandidate& candidate = evidence_.at(found + "_pressure").front();
     return fmt::format(
-        "{}: it has {} ({}), but no {} pressure of a known name, unit and size, so it cannot be corrected; "
-        "{}get the file with the {} pressure, or name it in the [variables] of a model",
-        flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
-        requested, has_static ? dynamic_pressure_by_airspeed() : "", requested);
-  }
-
-  /// The formula of a dynamic pressure by a Mach number or an airspeed; empty without both.
-  std::string dynamic_pressure_by_airspeed() const {
-    const std::string pressure = in_unit(evidence_.at("static_pressure").front().variable, "hPa");
-    const auto found = [this](const char* series) {
-      const std::vector<RoleCandidate>& candidates = candidates_for(series);
-      return candidates.empty() ? std::string() : candidates.front().variable;
-    };
-    const std::string mach = found("mach");
-    const std::string airspeed = found("true_airspeed");
-    const std::string temperature = found("ambient_temperature");
-    const std::string indicated = indicated_airspeed();
-    std::string source;
-    std::string formula;
-    if (!mach.empty()) {
-      source = mach;
-      formula = fmt::format("{} * ((1 + 0.2 * {}^2)^3.5 - 1)", pressure, in_unit(mach, "1"));
-    } else if (!indicated.empty()) {
-      source = indicated;
-      formula = fmt::format("1013.25 * ((1 + 0.2 * ({} / 340.294)^2)^3.5 - 1)", in_unit(indicated, "m/s"));
-    } else if (!airspeed.empty() && !temperature.empty()) {
-      source = fmt::format("{} and {}", airspeed, temperature);
-      formula = fmt::format("{} * ((1 + {}^2 / (2009 * {}))^3.5 - 1)", pressure, in_unit(airspeed, "m/s"),
-                            in_unit(temperature, "K"));
-    } else {
-      return "";
-    }
-    return fmt::format(
-        "the archive computed {} from a corrected dynamic pressure, QC = {} in "
-        "hPa; add QC to a copy of the file and name both in the [variables] of "
-        "a model to fit the remaining error (not the raw error); ",
-        source, formula);
-  }
-
-  /// A variable in a unit, as a formula has it.
-  std::string in_unit(const std::string& variable, const std::string& unit) const {
-    const UnitConversion conversion = flight_.conversion(variable, unit);
-    std::string text = variable;
-    if (conversion.scale() != 1.0) text = fmt::format("{:.6g} * {}", conversion.scale(), text);
-    if (conversion.offset() != 0.0) text = fmt::format("{} {:+.6g}", text, conversion.offset());
-    return text == variable ? text : "(" + text + ")";
-  }
-
-  /// By its words; no model reads one.
-  std::string indicated_airspeed() const {
-    for (const std::string& name : flight_.variables()) {
-      const VariableInfo& info = flight_.variable(name);
-      if (!info.is_series || !has_values(flight_, name, "m/s")) continue;
-      for (const std::vector<std::string>& words : {plain_words(name), plain_words(info.long_name)}) {
-        const auto has = [&words](const char* word) {
-          return std::find(words.begin(), words.end(), word) != words.end();
-        };
-        if (has("ias") || has("cas") ||
-            ((has("indicated") || has("calibrated")) && (has("airspeed") || has("speed"))))
-          return name;
-      }
-    }
-    return {};
+        "{}: {} is a {} pressure ({}), but no {} pressure of a known name, unit and size was found; get the "
+        "file with the {} pressure, or name it in the [variables] of a model",
+        flight_.path().string(), candidate.variable, found, candidate.why, missing, missing);
   }
 
   /// Adds roles that the aircraft's names do not determine. A recorded Mach number is computed from the
   /// pressures, so it is not used.
   void add_roles_by_evidence(ModelDefinition& model) {
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
-    const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
-    const bool has_humidity = has(Quantity::vapor_pressure) || has(Quantity::dew_point);
+    // A model has one temperature and one humidity.
+    const auto has_another = [&has](Quantity role, std::initializer_list<Quantity> alike) {
+      return std::find(alike.begin(), alike.end(), role) != alike.end() &&
+             std::any_of(alike.begin(), alike.end(), has);
+    };
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);
       const std::string name(info_of(role).name);
       const RoleCandidate* const candidate = sure_candidate(name);
-      const std::vector<std::string> names = family_.names_of(name);
-      const bool is_known =
-          !result_.alike.empty() && std::any_of(names.begin(), names.end(), [&](const std::string& each) {
-            return has_values(flight_, each, std::string(info_of(role).unit), family_.unit_of(each));
-          });
+      const bool is_known = !result_.alike.empty() && !first_with_values(flight_, family_, name).empty();
       const bool is_chosen =
           has(role) || is_known ||
-          (has_temperature &&
-           (role == Quantity::recovery_temperature || role == Quantity::ambient_temperature)) ||
-          (has_humidity && (role == Quantity::vapor_pressure || role == Quantity::dew_point)) ||
-          (role == Quantity::dew_point && has(Quantity::vapor_pressure)) ||
-          (role == Quantity::ambient_temperature && has(Quantity::recovery_temperature));
+          has_another(role, {Quantity::recovery_temperature, Quantity::ambient_temperature}) ||
+          has_another(role, {Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point});
       if (candidate == nullptr || is_chosen) continue;
       const bool plays_a_role =
           std::any_of(model.variables.begin(), model.variables.end(),
@@ -564,13 +501,8 @@ class Look {
   }
 
   bool has_ground_components() const {
-    const auto has = [this](const std::string& component) {
-      const std::vector<std::string> names = names_of(component);
-      return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
-        return has_values(flight_, name, "m/s", family_.unit_of(name));
-      });
-    };
-    return has("ground_speed_east") && has("ground_speed_north");
+    return !first_with_values(flight_, family_, "ground_speed_east").empty() &&
+           !first_with_values(flight_, family_, "ground_speed_north").empty();
   }
 
   /// States a role of the table that the model does not read, because another role replaces it.
@@ -579,7 +511,9 @@ class Look {
     const std::map<Quantity, std::string>& variables = result_.model->variables;
     for (const auto& [role, other] :
          {std::pair(Quantity::ambient_temperature, Quantity::recovery_temperature),
-          std::pair(Quantity::dew_point, Quantity::vapor_pressure)}) {
+          std::pair(Quantity::dew_point, Quantity::vapor_pressure),
+          std::pair(Quantity::frost_point, Quantity::vapor_pressure),
+          std::pair(Quantity::frost_point, Quantity::dew_point)}) {
       const auto reads = variables.find(other);
       if (variables.count(role) != 0 || reads == variables.end()) continue;
       for (InspectedRole& each : result_.roles) {

@@ -47,12 +47,13 @@ ModelDefinition read_system(const std::string& path) {
 }
 
 /// Model file, or two variables joined by +, which are not corrected.
-Pointer read_total_pressure(const std::string& system, const ModelDefinition&) {
+Pointer read_total_pressure(const std::string& system, const ModelDefinition& model) {
   const std::size_t plus = system.find('+');
   if (plus == std::string::npos || std::filesystem::exists(system))
     return total_pressure_reference(read_system(system));
   ModelDefinition pair;
   pair.model.name = system;
+  pair.roles_from = model.roles_from;
   pair.variables = {{Quantity::static_pressure, system.substr(0, plus)},
                     {Quantity::dynamic_pressure, system.substr(plus + 1)}};
   return total_pressure_reference(std::move(pair));

@@ -72,11 +72,8 @@ std::string unit_that_fits(const std::string& own, double ratio) {
 
 /// A GPS height; the pressure height would always agree with the pressure.
 std::string height_of(const Flight& flight, const ModelDefinition& model, const VariableNaming& family) {
-  if (std::string named = model.variable_of(Quantity::altitude); !named.empty()) return named;
-  for (const std::string& name : family.names_of("altitude")) {
-    if (has_values(flight, name, "m", family.unit_of(name))) return name;
-  }
-  return {};
+  const std::string named = model.variable_of(Quantity::altitude);
+  return named.empty() ? first_with_values(flight, family, "altitude") : named;
 }
 
 /// Holds the pressures of a model against each other, the height and other systems.

@@ -31,6 +31,11 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
   }
 }
 
+bool has_role(const Flight& flight, const VariableNaming& family, const std::string& variable,
+              Quantity role) {
+  return has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable));
+}
+
 }  // namespace
 
 ReadValues read_values(const Flight& flight, const std::string& variable, const UnitConversion& conversion,
@@ -107,10 +112,26 @@ bool has_values(const Flight& flight, const std::string& variable, const std::st
   return true;
 }
 
+bool has_values(const Flight& flight, const VariableNaming& family, const PressurePair& pair) {
+  return has_role(flight, family, pair.static_pressure, Quantity::static_pressure) &&
+         has_role(flight, family, pair.dynamic_pressure, Quantity::dynamic_pressure);
+}
+
+bool has_values(const Flight& flight, const VariableNaming& family, const Thermometer& thermometer) {
+  return has_role(flight, family, thermometer.variable, Quantity::recovery_temperature);
+}
+
+std::string first_with_values(const Flight& flight, const VariableNaming& family, std::string_view name) {
+  const std::string unit(series_named(name)->unit);
+  for (const std::string& variable : family.names_of(name)) {
+    if (has_values(flight, variable, unit, family.unit_of(variable))) return variable;
+  }
+  return "";
+}
+
 std::string processed_static_pressure(const Flight& flight, const VariableNaming& family) {
-  const std::string unit(info_of(Quantity::static_pressure).unit);
   for (const PressurePair& pair : family.processed) {
-    if (has_values(flight, pair.static_pressure, unit, family.unit_of(pair.static_pressure)))
+    if (has_role(flight, family, pair.static_pressure, Quantity::static_pressure))
       return pair.static_pressure;
   }
   return "";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,23 @@ RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Qua
 /// the file).
 bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
                 const std::string& stated = "");
+
+/// Whether a flight has values of both pressures, or of the thermometer. The family may state their units.
+bool has_values(const Flight& flight, const VariableNaming& family, const PressurePair& pair);
+bool has_values(const Flight& flight, const VariableNaming& family, const Thermometer& thermometer);
+
+/// The first of the pairs or thermometers of a family that has values; nullptr without such a one.
+template <class Entry>
+const Entry* first_with_values(const Flight& flight, const VariableNaming& family,
+                               const std::vector<Entry>& entries) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& entry) { return has_values(flight, family, entry); });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+/// The first of the usual variables of a series that has values; empty without such a variable.
+/// @param name of the series (`series_named`)
+std::string first_with_values(const Flight& flight, const VariableNaming& family, std::string_view name);
 
 /// Name of the static pressure corrected by the flight's own processing; empty if not recorded.
 std::string processed_static_pressure(const Flight& flight, const VariableNaming& family);

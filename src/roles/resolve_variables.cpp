@@ -27,7 +27,8 @@ class Completion {
     take_pressures();
     take_temperature();
     if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
-      if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && file_.model.moist) {
+      if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && !take(Quantity::frost_point) &&
+          file_.model.moist) {
         file_.model.moist = false;
         traps_.emplace_back("no humidity is recorded: the air is assumed dry");
       }
@@ -55,10 +56,6 @@ class Completion {
 
   bool has(Quantity role) const { return file_.variables.count(role) != 0; }
 
-  bool is_there(Quantity role, const std::string& variable) const {
-    return has_values(flight_, variable, std::string(info_of(role).unit), family_.unit_of(variable));
-  }
-
   void set(Quantity role, const std::string& variable) {
     file_.variables[role] = variable;
     if (std::string unit = family_.unit_of(variable); !unit.empty())
@@ -69,24 +66,17 @@ class Completion {
   }
 
   bool take(Quantity role) {
-    for (const std::string& variable : family_.names_of(info_of(role).name)) {
-      if (!is_there(role, variable)) continue;
-      set(role, variable);
-      return true;
-    }
-    return false;
+    const std::string variable = first_with_values(flight_, family_, info_of(role).name);
+    if (!variable.empty()) set(role, variable);
+    return !variable.empty();
   }
 
   bool take_pair(const std::vector<PressurePair>& pairs) {
-    for (const PressurePair& pair : pairs) {
-      if (!is_there(Quantity::static_pressure, pair.static_pressure) ||
-          !is_there(Quantity::dynamic_pressure, pair.dynamic_pressure))
-        continue;
-      set(Quantity::static_pressure, pair.static_pressure);
-      set(Quantity::dynamic_pressure, pair.dynamic_pressure);
-      return true;
-    }
-    return false;
+    const PressurePair* const pair = first_with_values(flight_, family_, pairs);
+    if (pair == nullptr) return false;
+    set(Quantity::static_pressure, pair->static_pressure);
+    set(Quantity::dynamic_pressure, pair->dynamic_pressure);
+    return true;
   }
 
   void take_pressures() {
@@ -110,18 +100,17 @@ class Completion {
 
   void take_temperature() {
     if (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature)) return;
-    for (const Thermometer& thermometer : family_.thermometers) {
-      if (!is_there(Quantity::recovery_temperature, thermometer.variable)) continue;
-      set(Quantity::recovery_temperature, thermometer.variable);
-      const bool states_one = !file_.recovery_factor_name.empty() ||
-                              file_.model.recovery.coefficients != Model().recovery.coefficients;
-      if (!states_one) {
-        file_.model.recovery = published_recovery_factor(thermometer.recovery)->law;
-        file_.recovery_factor_name = thermometer.recovery;
-      }
+    const Thermometer* const thermometer = first_with_values(flight_, family_, family_.thermometers);
+    if (thermometer == nullptr) {
+      take(Quantity::ambient_temperature);
       return;
     }
-    take(Quantity::ambient_temperature);
+    set(Quantity::recovery_temperature, thermometer->variable);
+    const bool states_one = !file_.recovery_factor_name.empty() ||
+                            file_.model.recovery.coefficients != Model().recovery.coefficients;
+    if (states_one) return;
+    file_.model.recovery = published_recovery_factor(thermometer->recovery)->law;
+    file_.recovery_factor_name = thermometer->recovery;
   }
 
   ModelDefinition file_;

@@ -32,7 +32,7 @@ constexpr std::string_view no_pressure = "dynamic total cabin differential vapor
 constexpr std::string_view no_temperature =
     "potential virtual equivalent cabin dew frost surface sea bay transducer housing internal";
 
-constexpr std::array<Signs, 32> signs{{
+constexpr std::array<Signs, 33> signs{{
     {"static_pressure", "static pressure;pressure static;ambient pressure;air pressure;ps", no_pressure,
      "air_pressure", 50, 1100},
     {"dynamic_pressure", "dynamic pressure;impact pressure;pitot pressure;qc",
@@ -50,6 +50,7 @@ constexpr std::array<Signs, 32> signs{{
      "water_vapor_partial_pressure_in_air",
      0, 60},
     {"dew_point", "dew point temperature;dew point", "frost depression", "dew_point_temperature", 150, 310},
+    {"frost_point", "frost point temperature;frost point", "dew depression", "", 150, 310},
     {"radome_dynamic_pressure", "radome dynamic pressure;radome pressure", "differential attack sideslip", "",
      1, 500},
     {"attack_differential_pressure",

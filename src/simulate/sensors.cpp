@@ -105,9 +105,11 @@ void add_noise(const Scenario& scenario, const std::string& variable, Series& se
 }
 
 void add_outliers(const Scenario& scenario, const std::string& variable, std::vector<double>& values) {
+  std::string stream = "outliers " + variable;
   for (const Scenario::Outliers& outliers : scenario.outliers) {
     if (outliers.variable != variable) continue;
-    Random random(scenario.seed, "outliers " + variable);
+    Random random(scenario.seed, stream);
+    stream += " further";  // each table has its own
     for (double& value : values) {
       if (random.uniform() < outliers.fraction) value += outliers.size * random.normal();
     }

@@ -1,12 +1,17 @@
 #include <gmock/gmock.h>
+#include <netcdf.h>
 #include <pcor/base/error.hpp>
 #include <pcor/campaign/chosen_references.hpp>
+#include <pcor/flight/flight.hpp>
 #include <pcor/residuals/reference.hpp>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
 #include "support/short_flight.hpp"
+#include "support/temporary_directory.hpp"
 
 using pcor::ChosenReferences;
 using pcor::ModelDefinition;
@@ -46,6 +51,33 @@ TEST(ChosenReferences, ExcludedReferenceHasAReason) {
   EXPECT_THAT(names(chosen), ElementsAre("lams", "total:PSFRD+QCFR"));
   EXPECT_THAT(chosen.not_used, ElementsAre(HasSubstr("height: the model names no temperature"),
                                            HasSubstr("wind: the model names no temperature")));
+}
+
+// A pair whose unit the aircraft states, and the file does not, was passed over.
+TEST(ChosenReferences, DataOfTheAircraftStateTheUnit) {
+  const pcor::test::TemporaryDirectory folder;
+  const std::filesystem::path flight = folder / "flight.nc";
+  std::filesystem::copy_file(short_flight(), flight);
+  int file = 0, variable = 0;
+  ASSERT_EQ(nc_open(flight.c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "PSFRD", &variable), NC_NOERR);
+  ASSERT_EQ(nc_del_att(file, variable, "units"), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+  std::ofstream(folder / "mine.toml") << R"(
+format = "pcor-aircraft/1"
+name = "mine"
+title = "my aircraft"
+[pressures]
+measured = [["PSFD", "QCF"], ["PSFRD", "QCFR"]]
+[units]
+PSFRD = "hPa"
+)";
+  ModelDefinition model = laser_model();
+  model.roles_from = (folder / "mine.toml").string();
+  const ChosenReferences chosen = pcor::read_references({}, model, {flight});
+  ASSERT_THAT(names(chosen), ElementsAre("lams", "total:PSFRD+QCFR"));
+  pcor::Notes notes;
+  EXPECT_NO_THROW(chosen.used.back()->read(pcor::Flight(flight), {}, notes));
 }
 
 TEST(ChosenReferences, NoLaserAndNoNameIsAnError) {

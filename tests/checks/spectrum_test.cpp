@@ -18,13 +18,14 @@ namespace {
 
 using testing::HasSubstr;
 
-CheckedFlight made(std::vector<double> defect) {
+CheckedFlight made(std::vector<double> defect, double step = 1.0) {
   CheckedFlight flight;
   FlightAir& air = flight.air;
   auto samples = std::make_shared<FlightSamples>();
   samples->name = "made.nc";
   const std::size_t count = defect.size();
-  for (std::size_t i = 0; i < count; ++i) samples->time.push_back(1e9 + static_cast<double>(i));
+  samples->step = step;
+  for (std::size_t i = 0; i < count; ++i) samples->time.push_back(1e9 + step * static_cast<double>(i));
   air.samples = std::move(samples);
   air.flying.assign(count, true);
   air.pressure.assign(count, 700.0);
@@ -104,6 +105,16 @@ TEST(SpectrumCheck, OctavesHaveTheVarianceOfTheSeries) {
     EXPECT_NEAR(ratio, std::sqrt(2.0), 4.0 * std::hypot(bars[i].error / bars[i].value, 0.01) * ratio) << i;
   }
   EXPECT_NEAR(sum / 0.09, 1.0, 0.05);
+}
+
+TEST(SpectrumCheck, UnusedFlightsAreThoseWithTheSeries) {
+  const CheckedFlight fast = made(white(8000, 0.2, 6), 0.04);
+  const CheckedFlight slow = made(white(1000, 0.2, 7));
+  CheckedFlight without_laser = slow;
+  without_laser.air.laser.reset();
+  EXPECT_THAT(check_spectrum({fast, without_laser}).notes, testing::IsEmpty());
+  EXPECT_THAT(check_spectrum({fast, slow, without_laser}).notes,
+              testing::ElementsAre(testing::Field(&Note::text, HasSubstr("1 of 3 flights are not used"))));
 }
 
 TEST(SpectrumCheck, ReasonForNoResultIsReported) {

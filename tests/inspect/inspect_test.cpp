@@ -97,6 +97,23 @@ TEST(Inspect, RoleThatTheModelDoesNotReadHasARemark) {
                                                Field(&InspectedRole::trap, testing::HasSubstr("TTX")))));
 }
 
+TEST(Inspect, FrostPointIsReadWithoutAnotherHumidity) {
+  const pcor::test::TemporaryDirectory folder;
+  std::vector<std::pair<std::string, std::string>> variables{
+      {"PSFD", "hPa"}, {"QCF", "hPa"}, {"frost_point", "degF"}};
+  const Inspection alone = pcor::inspect_flight(flight_with(folder, variables));
+  ASSERT_TRUE(alone.model.has_value());
+  EXPECT_EQ(alone.model->variable_of(pcor::Quantity::frost_point), "frost_point");
+  EXPECT_TRUE(alone.model->model.moist);
+  variables.emplace_back("dew_point", "degF");
+  const Inspection both = pcor::inspect_flight(flight_with(folder, variables));
+  ASSERT_TRUE(both.model.has_value());
+  EXPECT_EQ(both.model->variable_of(pcor::Quantity::dew_point), "dew_point");
+  EXPECT_EQ(both.model->variable_of(pcor::Quantity::frost_point), "");
+  EXPECT_THAT(both.roles, Contains(AllOf(role("frost_point", "frost_point"),
+                                         Field(&InspectedRole::trap, testing::HasSubstr("dew_point")))));
+}
+
 TEST(Inspect, ReportBeginsWithWarningsAndRoles) {
   const pcor::test::TemporaryDirectory folder;
   pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), folder / "flight.nc");

@@ -66,6 +66,17 @@ TEST_F(RoleEvidence, RequiresAMatchingUnitAndPlausibleValues) {
   EXPECT_FALSE(is_sure(found["roll"])) << "no unit";
 }
 
+// "Dew/Frost Point Temperature" of NCAR's files is the reading of a mirror or a dew point computed from it.
+TEST_F(RoleEvidence, FrostPointIsNamedWithoutADewPoint) {
+  auto found = candidates({{"FP", "degC", "Frost Point Temperature", -20},
+                           {"DPT", "degC", "Dew/Frost Point Temperature, Top", -20},
+                           {"frost_point_depression", "K", "", 200}});
+  ASSERT_EQ(found["frost_point"].size(), 1U);
+  EXPECT_EQ(found["frost_point"].front().variable, "FP");
+  EXPECT_TRUE(is_sure(found["frost_point"]));
+  EXPECT_TRUE(found["dew_point"].empty());
+}
+
 TEST_F(RoleEvidence, SimulatedTruthIsNotACandidate) {
   const auto path = folder_.path() / "flight.nc";
   {

@@ -675,6 +675,30 @@ size = 5.0
   EXPECT_LT(spikes, 25U);  // 10 expected, five standard deviations
 }
 
+TEST(Simulate, TablesOfOutliersAreIndependent) {
+  const std::string text = quiet_flight + leg("level", "duration = 600");
+  const std::string table = "[[outliers]]\nvariable = \"QCF\"\nfraction = 0.1\nsize = 5.0\n";
+  const auto none = Simulated(text).raw("QCF");
+  const auto one = Simulated(text + table).raw("QCF");
+  const auto two = Simulated(text + table + table).raw("QCF");
+  double first = 0.0, second = 0.0, shared = 0.0;
+  for (std::size_t i = 0; i < none.size(); ++i) {
+    const bool is_first = one[i] != none[i];
+    const bool is_second = two[i] != one[i];
+    first += is_first ? 1.0 : 0.0;
+    second += is_second ? 1.0 : 0.0;
+    shared += is_first && is_second ? 1.0 : 0.0;
+  }
+  // Binomial numbers, within five standard deviations.
+  const auto expect_binomial = [](double found, double samples, double fraction) {
+    EXPECT_NEAR(found, samples * fraction, 5.0 * std::sqrt(samples * fraction * (1.0 - fraction)));
+  };
+  const auto samples = static_cast<double>(none.size());
+  expect_binomial(first, samples, 0.1);
+  expect_binomial(second, samples, 0.1);
+  expect_binomial(shared, samples, 0.01);
+}
+
 TEST(Simulate, StallIsRefused) {
   const Scenario scenario =
       parse_scenario(noisy_flight + leg("climb", "altitude = 8000\nspeed = 76"), "test.toml");

@@ -19,7 +19,7 @@ import unittest
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ONE, TWO, ComparisonTest  # noqa: E402
-from tool_test import SOURCE, TOOL  # noqa: E402
+from tool_test import SOURCE, TOOL, replace  # noqa: E402
 
 THREE = FLIGHTS / "three.nc"
 
@@ -281,6 +281,15 @@ class Terminal(ComparisonTest):
         self.assertEqual(re.sub("\033\\[[0-9]+m", "", coloured), plain)
         for refused in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
             self.assertEqual(self.shown(9000, "check", ONE, "--verbose", **refused), plain)
+
+    def test_labels_of_notes_are_bold_on_a_terminal(self):
+        late = self.model(replace(r"^valid_from = .*$", 'valid_from = "2012-01-01"'))
+        numbered = self.shown(9000, "compare", ONE, "-m", late, TERM="xterm")
+        self.assertIn("\n\033[1mnote 1\033[0m: warning: the law is valid", numbered)
+        self.assertIn("\n\033[1mnote 2\033[0m: ", numbered)
+        complete = self.shown(9000, "compare", ONE, "-m", late, "--verbose", TERM="xterm")
+        self.assertIn("\n\033[1mWarning\033[0m: the law is valid", complete)
+        self.assertIn("\n\033[1mNote\033[0m: ", complete)
 
     def test_a_printed_command_is_not_wrapped(self):
         model = self.model()

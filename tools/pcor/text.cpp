@@ -120,15 +120,16 @@ bool wants_colour() {
          std::string_view(terminal) != "dumb";
 }
 
-/// Beginning of a note, and verdict in a row of a table, with terminal colours.
+/// Label of a note ("note 1", "Note", "Warning") bold, and verdict in a row of a table in colour.
 std::string coloured(std::string line) {
   constexpr std::string_view plain = "\033[0m";
   const auto paint = [&](std::size_t at, std::size_t length, std::string_view colour) {
     line.insert(at + length, plain);
     line.insert(at, colour);
   };
-  constexpr std::string_view note = "Note";
-  if (line.rfind("Note:", 0) == 0 || line.rfind("Note,", 0) == 0) paint(0, note.size(), "\033[1m");
+  for (const std::string_view label : {"note ", "Note:", "Warning:"}) {
+    if (line.rfind(label, 0) == 0) paint(0, std::min(line.find(':'), line.size()), "\033[1m");
+  }
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> verdicts{
       {{"inconsistent", "\033[31m"}, {"consistent", "\033[32m"}, {"inconclusive", "\033[33m"}}};
   for (const auto& [verdict, colour] : verdicts) {

@@ -20,8 +20,8 @@ const std::string& program();
 void set_program(const std::string& name_as_called);
 
 /// Prints text for people on standard output, with lines folded at the width of the terminal, verdicts of
-/// checks in colour and notes bold unless NO_COLOR is set. If standard output is not a terminal the text is
-/// unchanged.
+/// checks in colour and labels of notes bold unless NO_COLOR is set. If standard output is not a terminal the
+/// text is unchanged.
 void say_text(std::string_view text);
 
 /// Disables terminal formatting. MPI may connect its processes to a terminal.
