@@ -49,7 +49,7 @@ struct Unfinished {
 };
 static_assert(std::atomic<int>::is_always_lock_free);
 
-std::array<Unfinished, 128> unfinished_files;  // figures of a report are committed together
+std::array<Unfinished, 128> unfinished_files;
 
 // One that finds no room is not listed; only a signal would leave it behind.
 void list_as_unfinished(const std::string& path) {
@@ -167,8 +167,6 @@ void remove_unfinished_files() noexcept {
   const int before = errno;
   for (const Unfinished& entry : unfinished_files)
     if (entry.state == Unfinished::listed) ::unlink(entry.path);
-  for (const Unfinished& entry : unfinished_files)
-    if (entry.state == Unfinished::listed) ::rmdir(entry.path);
   errno = before;
 }
 
@@ -235,29 +233,7 @@ OutputTransaction::~OutputTransaction() {
     fs::remove(file.path, ignored);
     take_from_list(file.path.string());
   }
-  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
-    ::rmdir(folder->c_str());
-    take_from_list(folder->string());
-  }
 }
-
-void OutputTransaction::make_folder(const fs::path& folder) {
-  std::error_code code;
-  if (fs::is_directory(folder, code)) return;
-  fs::path path = fs::absolute(folder, code).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // of "figures/"
-  if (path.has_relative_path() && !fs::is_directory(path.parent_path(), code))
-    make_folder(path.parent_path());
-  list_as_unfinished(path.string());
-  if (!fs::create_directory(path, code) && !fs::is_directory(path)) {
-    take_from_list(path.string());
-    fail(folder, fmt::format(" cannot be a folder of outputs: {}; choose another",
-                             code ? code.message() : "the path exists and is not a file"));
-  }
-  whole_->folders_.push_back(path);
-}
-
-void OutputTransaction::remove(const fs::path& earlier) { whole_->earlier_.push_back(earlier); }
 
 fs::path readable_output(const fs::path& target) {
   if (outputs_together != nullptr) {
@@ -278,10 +254,6 @@ void OutputTransaction::appear() {
     put_in_place(file.shown, file.target, file.path);
     waiting_.erase(waiting_.begin());
   }
-  for (const fs::path& folder : folders_) take_from_list(folder.string());
-  folders_.clear();
-  std::error_code ignored;
-  for (const fs::path& path : earlier_) fs::remove(path, ignored);
 }
 
 }  // namespace pcor

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <utility>
 
+#include <pcor/numerics/noise.hpp>
 #include "numerics/decompositions.hpp"
-#include "numerics/median.hpp"
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/distributed_quantile.hpp"
+#include "parallel/packed.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -99,8 +100,11 @@ Eigen::MatrixXd side_by_side(const Eigen::MatrixXd& left, const Eigen::MatrixXd&
 
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values) {
   std::vector<double> all;
-  for (const Eigen::VectorXd& own : values) all.insert(all.end(), own.begin(), own.end());
-  return deviation_of_median * median_of_absolute_values(comm, std::move(all));
+  for (const std::string& bytes : comm.gather(packed(values))) {
+    for (const auto& each : unpacked<std::vector<Eigen::VectorXd>>(bytes))
+      all.insert(all.end(), each.begin(), each.end());
+  }
+  return robust_standard_deviation(std::move(all));
 }
 
 Eigen::VectorXd weights_of_bins(const Binning& bins, double deviation) {

@@ -40,7 +40,8 @@ NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vec
 /// Columns of two matrices with the same rows in one.
 Eigen::MatrixXd side_by_side(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right);
 
-/// Robust standard deviation of the values of all ranks together. @param values of the local flights
+/// Robust standard deviation of the values of all ranks together: one exchange, after which every rank holds
+/// all values, 8 bytes each. @param values of the local flights
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values);
 
 /// Weights of the bins in least squares, 1/hPa: the square root of the share of samples in a bin, relative to

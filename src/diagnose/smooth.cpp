@@ -1,12 +1,10 @@
 #include "diagnose/smooth.hpp"
 
-#include <cereal/types/set.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 #include <set>
-
-#include "parallel/distributed_quantile.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -25,57 +23,42 @@ double spline_at(double x) {
 }  // namespace
 
 VariableValues::VariableValues(const FlightPartition& share,
-                               const std::function<std::vector<double>(std::size_t)>& values_of)
-    : share_(share), values_(share.flights()) {
-  sums_ = share.sum_of_each_flight<Sums>([&](std::size_t flight) {
-    std::vector<double>& values = values_[flight];
-    values = values_of(flight);
-    Sums part;
-    part.missing = values.size();
-    values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); }),
-                 values.end());
-    part.count = values.size();
-    part.missing -= part.count;
-    for (const double value : values) {
-      part.sum += value;
-      part.minimum = std::min(part.minimum, value);
-      part.maximum = std::max(part.maximum, value);
-    }
-    return part;
-  });
-  if (sums_.count == 0) return;
-  mean_ = sums_.sum / static_cast<double>(sums_.count);
-  const auto squares = share.sum_of_each_flight<double>([this](std::size_t flight) {
-    double sum = 0.0;
-    for (const double value : values_[flight]) sum += (value - mean_) * (value - mean_);
-    return sum;
-  });
-  deviation_ = std::sqrt(squares / static_cast<double>(sums_.count));
+                               const std::function<std::vector<double>(std::size_t)>& values_of) {
+  for (const std::vector<double>& of_flight : share.of_each_flight<std::vector<double>>(values_of)) {
+    std::copy_if(of_flight.begin(), of_flight.end(), std::back_inserter(values_),
+                 [](double value) { return std::isfinite(value); });
+    missing_ += of_flight.size();
+  }
+  missing_ -= values_.size();
+  if (values_.empty()) return;
+  const auto [least, greatest] = std::minmax_element(values_.begin(), values_.end());
+  minimum_ = *least;
+  maximum_ = *greatest;
+  const auto count = static_cast<double>(values_.size());
+  mean_ = std::accumulate(values_.begin(), values_.end(), 0.0) / count;
+  double squares = 0.0;
+  for (const double value : values_) squares += (value - mean_) * (value - mean_);
+  deviation_ = std::sqrt(squares / count);
 }
 
 std::vector<double> VariableValues::distinct(std::size_t maximum) const {
-  const auto of_flights = share_.of_each_flight<std::set<double>>([&](std::size_t flight) {
-    std::set<double> own;
-    for (std::size_t i = 0; i < values_[flight].size() && own.size() <= maximum; ++i)
-      own.insert(values_[flight][i]);
-    return own;
-  });
-  std::set<double> all;
-  for (const std::set<double>& of_flight : of_flights) all.insert(of_flight.begin(), of_flight.end());
-  return {all.begin(), all.end()};
+  std::set<double> found;
+  for (std::size_t i = 0; i < values_.size() && found.size() <= maximum; ++i) found.insert(values_[i]);
+  return {found.begin(), found.end()};
 }
 
 std::vector<double> VariableValues::quantiles(std::size_t number) const {
-  std::vector<double> local;
-  for (const std::vector<double>& values : values_) local.insert(local.end(), values.begin(), values.end());
-  return values_at(share_.comm(), std::move(local), [number](std::uint64_t count) {
-    std::vector<std::uint64_t> requested;
-    for (std::size_t k = 0; k < number; ++k) {
-      const double part = static_cast<double>(k) / static_cast<double>(number - 1);
-      requested.push_back(static_cast<std::uint64_t>(part * static_cast<double>(count - 1)));
-    }
-    return requested;
-  });
+  std::vector<double> values = values_;
+  std::vector<double> found;
+  auto begin = values.begin();
+  for (std::size_t k = 0; k < number; ++k) {
+    const double part = static_cast<double>(k) / static_cast<double>(number - 1);
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(count() - 1));
+    std::nth_element(begin, place, values.end());
+    found.push_back(*place);
+    begin = place;
+  }
+  return found;
 }
 
 bool Smooth::describe(const VariableValues& values) {

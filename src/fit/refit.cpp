@@ -457,8 +457,7 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
     const bool has_both = gps != in_order.begin() && gps != in_order.end();
     const bool is_for_others = !options.stages.empty() || options.fit_reference || options.use_prior ||
                                options.loss != RefitOptions().loss;
-    const bool is_of_fit = error.code() == Error::Code::samples || error.code() == Error::Code::fit ||
-                           error.code() == Error::Code::usage;  // of --search
+    const bool is_of_fit = error.code() == Error::Code::samples || error.code() == Error::Code::fit;
     if (!has_both || !is_of_fit || is_for_others) throw;
     result = fit(flights, model, References(gps, in_order.end()), options);
     result.notes.insert(result.notes.begin(),
@@ -486,7 +485,7 @@ std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelDefi
   RefitOptions options;
   options.mask = mask;
   for (const ModelEffect& effect : model.model.effects) {
-    if (effect.id != constant) options.fix.push_back(effect.id);
+    if (effect.id != constant && !effect.parameters.empty()) options.fix.push_back(effect.id);
   }
   options.free.push_back(constant);
   const RefitResult found = refit(flights, with, gps, options);

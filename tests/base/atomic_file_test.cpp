@@ -68,46 +68,5 @@ TEST(OutputTransaction, InnerTransactionJoinsOuterTransaction) {
   EXPECT_THAT(names_in(directory), UnorderedElementsAre("figure", "model"));
 }
 
-TEST(OutputTransaction, FailureRemovesCreatedFolders) {
-  const test::TemporaryDirectory directory;
-  std::filesystem::create_directory(directory / "old");
-  {
-    OutputTransaction together;
-    together.make_folder(directory / "old");
-    together.make_folder(directory / "new" / "of" / "new");
-    write(directory / "new" / "of" / "new" / "figure");
-  }
-  EXPECT_THAT(names_in(directory), UnorderedElementsAre("old"));
-  OutputTransaction together;
-  together.make_folder(directory / "new" / "of");
-  write(directory / "new" / "of" / "figure");
-  together.appear();
-  EXPECT_TRUE(std::filesystem::exists(directory / "new" / "of" / "figure"));
-}
-
-TEST(OutputTransaction, FolderAtPathOfFileIsRejected) {
-  const test::TemporaryDirectory directory;
-  write(directory / "file");
-  OutputTransaction together;
-  EXPECT_THAT(test::error_of([&] { together.make_folder(directory / "file" / "new"); }),
-              test::IsError(Error::Code::output, (directory / "file").string()));
-}
-
-TEST(OutputTransaction, OldFilesAreRemovedWhenNewFilesAppear) {
-  const test::TemporaryDirectory directory;
-  write(directory / "earlier");
-  {
-    OutputTransaction together;
-    together.remove(directory / "earlier");
-    write(directory / "new");
-  }
-  EXPECT_THAT(names_in(directory), UnorderedElementsAre("earlier"));
-  OutputTransaction together;
-  together.remove(directory / "earlier");
-  write(directory / "new");
-  together.appear();
-  EXPECT_THAT(names_in(directory), UnorderedElementsAre("new"));
-}
-
 }  // namespace
 }  // namespace pcor

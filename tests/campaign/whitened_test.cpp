@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "support/thread_team.hpp"
+
 using namespace pcor::internal;
 
 namespace {
@@ -157,4 +159,20 @@ TEST(WhitenedSystem, DriftReducesInformationOfSlowColumns) {
   // For a column without correlation a drift that is slower than two minutes hides a tenth at most.
   EXPECT_GT(with.information(1, 1), 0.8 * without.information(1, 1));
   EXPECT_NEAR(with.plain(0, 0), without.information(0, 0), 1e-9 * without.information(0, 0));
+}
+
+TEST(RobustDeviation, EqualsThatOfOneListForEachPartition) {
+  // For an even count the median is the upper middle value.
+  const std::vector<Eigen::VectorXd> of_flights{Eigen::Vector3d(-4.0, missing, 1.0), Eigen::VectorXd(),
+                                                Eigen::Vector2d(2.0, -3.0)};
+  for (const std::size_t size : {1U, 2U, 3U, 4U}) {
+    pcor::test::run_with_communicator(size, [&](pcor::Communicator& comm) {
+      std::vector<Eigen::VectorXd> local;
+      for (std::size_t flight = comm.rank(); flight < of_flights.size(); flight += size)
+        local.push_back(of_flights[flight]);
+      // Two roundings: 1.4826 is 1 over the quantile of the normal distribution at 0.75.
+      EXPECT_NEAR(robust_deviation(comm, local), 3.0 / 0.674489750196082, 1e-14);
+      EXPECT_TRUE(std::isnan(robust_deviation(comm, {})));
+    });
+  }
 }

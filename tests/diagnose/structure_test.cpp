@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "support/thread_team.hpp"
+
 using namespace pcor::internal;
 
 namespace {
@@ -143,6 +145,30 @@ TEST(Smooth, FewLevelsAllowAnyFunctionOfThem) {
   Eigen::VectorXd target(90);
   for (Eigen::Index i = 0; i < 90; ++i) target[i] = i % 3 == 1 ? 5.0 : (i % 3 == 2 ? -1.0 : 0.5);
   EXPECT_LT(left_of(with_constant(rows), target), 1e-10);
+}
+
+TEST(VariableValues, QuantilesEqualThoseOfOneListForEachPartition) {
+  std::vector<double> values = draws(1001, 1);
+  for (double& value : values) value = std::exp(20.0 * value) * value;
+  values[3] = values[700] = values[701] = 0.0;
+  values[4] = -0.0;
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  for (const std::size_t size : {1U, 2U, 3U}) {
+    pcor::test::run_with_communicator(size, [&](pcor::Communicator& comm) {
+      const FlightPartition share(comm, {3, 2, 1});
+      const VariableValues known(share, [&values](std::size_t flight) {
+        std::vector<double> own;  // the last flight has no values
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          if (i * i % 2 == flight) own.push_back(values[i]);
+        }
+        return own;
+      });
+      const std::vector<double> found = known.quantiles(5);
+      ASSERT_EQ(found.size(), 5U);
+      for (std::size_t k = 0; k < found.size(); ++k) EXPECT_EQ(found[k], sorted[250 * k]);
+    });
+  }
 }
 
 // A variable that is zero most of the time, as liquid water: quantiles fall together.

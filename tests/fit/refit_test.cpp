@@ -363,6 +363,23 @@ TEST(Refit, CoefficientOfOnePartHasAnInfiniteJackknifeError) {
   EXPECT_THAT(result.notes, testing::Contains(pcor::test::Says("alone determines static-alpha.a1")));
 }
 
+// Eight flights were omitted one at a time, also those without a usable sample.
+TEST(Refit, FlightsWithoutSamplesAreNotJackknifeParts) {
+  const auto usable = made::shared(plan_18(12));
+  FlightSamples standing = made::flight(plan_18(13));
+  standing.motion.airspeed.assign(standing.time.size(), 0.0);
+  const RefitResult alone = fit({usable}, made::model(equation_18));
+  Flights flights(8, std::make_shared<const FlightSamples>(standing));
+  flights.front() = usable;
+  const RefitResult result = fit(flights, made::model(equation_18));
+  EXPECT_GT(alone.jackknife_parts, 8U);
+  EXPECT_EQ(result.jackknife_parts, alone.jackknife_parts);
+  for (std::size_t i = 0; i < alone.parameters.size(); ++i) {
+    const double expected = alone.parameters[i].jackknife_error;
+    EXPECT_NEAR(result.parameters[i].jackknife_error, expected, 1e-9 * expected);  // rounding
+  }
+}
+
 TEST(Refit, PriorDeterminesCollinearCoefficients) {
   // An hour of samples outweighs the prior; the prior decides nearly collinear terms.
   const auto samples = made::shared(plan_18(18));
@@ -400,38 +417,6 @@ TEST(Refit, PriorLimitsUndeterminedAddedEffects) {
     EXPECT_LT(std::abs(parameter.value), 2.0 * prior) << id;
     EXPECT_LT(parameter.standard_error, 1.1 * prior) << id;
   }
-}
-
-TEST(Refit, GlobalSearchFindsOptimumThatTheStartMisses) {
-  // A wave in time: between the start and the truth lie many minima of its frequency.
-  made::Plan plan = plan_18(13);
-  plan.defect = [](double p, double q, double ratio, double time) {
-    return made::equation_18(p, q, ratio, time) + 1.5 * std::sin(0.031 * time);
-  };
-  ModelDefinition model = made::model(equation_18);
-  pcor::ModelEffect wave;
-  wave.id = "wave";
-  wave.formula = "a * sin(w * time) + b * cos(w * time)";
-  wave.parameter_names = {"a", "b", "w"};
-  wave.parameters = {0.1, 0.1, 0.01};
-  model.model.effects.push_back(wave);
-  model.fits.resize(4);
-  model.fits[3].resize(3);
-  model.fits[3][0].bounds = model.fits[3][1].bounds = pcor::Bounds{-5.0, 5.0};
-  model.fits[3][2].bounds = pcor::Bounds{0.005, 0.1};
-  FlightSamples samples = made::flight(plan);
-  samples.model.columns.emplace_back(Quantity::time, std::vector<double>());
-  for (std::size_t i = 0; i < samples.time.size(); ++i)
-    samples.model.columns.back().second.push_back(static_cast<double>(i));
-  samples.model.roles.push_back(Quantity::time);
-  const auto shared = std::make_shared<const FlightSamples>(samples);
-  const RefitResult without = fit({shared}, model);
-  RefitOptions options;
-  options.search = true;
-  const RefitResult with = fit({shared}, model, options);
-  EXPECT_GT(without.rms, 2.0 * with.rms);
-  EXPECT_NEAR(with.rms, 0.3, 0.03);
-  EXPECT_NEAR(by_name(with).at("wave.w").value, 0.031, 1e-4);
 }
 
 TEST(Refit, ReportsHeldOutStatistics) {

@@ -184,11 +184,6 @@ def test_several_flights_are_processed_into_a_folder(in_folder):
             result.dataset
 
 
-def test_two_processes_give_the_same_result(in_folder):
-    assert (pcor.refit(FLIGHTS, model="model.toml", processes=2).to_json()
-            == pcor.refit(FLIGHTS, model="model.toml").to_json())
-
-
 def test_report_of_changed_inputs_is_an_error(in_folder):
     pcor.Model("model.toml").save("changing.toml")
     result = pcor.compare("first.nc", model="changing.toml")

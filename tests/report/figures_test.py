@@ -1,99 +1,140 @@
 #!/usr/bin/env python3
-"""Pictures of a report as files, by the option --figures.
+"""Pictures of a report as files, by tools/pcor-figures.
 
-    figures_test.py TOOL SOURCE_DIRECTORY FOLDER      FOLDER: where reports.py made flights and reports
+    figures_test.py SAMPLE_REPORT SOURCE_DIRECTORY
 
 Without Chromium the test is skipped (status 77), or fails if PCOR_REQUIRE_CHROMIUM is set.
 """
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
+from pathlib import Path
 
-sys.dont_write_bytecode = True  # no __pycache__ in the source directory
-from browser import CHROMIUM, skip_without  # noqa: E402
-from reports import COMMANDS, FITTED, FOLDER, TOOL, run  # noqa: E402
+from browser import CHROMIUM, skip_without
+
+SAMPLE_REPORT, SOURCE = (Path(word).resolve() for word in sys.argv[1:3])
+PROGRAM = SOURCE / "tools/pcor-figures"
+PANELS = 13
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def coloured(path):
+    """Width of a picture, and the number of its clearly coloured pixels in every fourth row."""
+    import numpy
+    from PIL import Image
+
+    with Image.open(path) as picture:
+        pixels = numpy.asarray(picture.convert("RGB"), int)
+    return pixels.shape[1], (pixels[::4].max(axis=2) - pixels[::4].min(axis=2) > 40).sum()
 
 
 class Figures(unittest.TestCase):
-    def test_command_writes_figures(self):
-        result = run(TOOL, "compare", *COMMANDS["compare"], "--figures", "figures", "--figures-for", "column")
-        self.assertIn("wrote figures\n", result.stdout)
-        names = sorted(each.name for each in (FOLDER / "figures").iterdir())
-        self.assertIn("captions.txt", names)
-        self.assertEqual(len([name for name in names if name.endswith(".svg")]), len([name for name in names if name.endswith(".png")]))
-        text = (FOLDER / "figures" / "captions.txt").read_text()
-        *captions, origin = [line for line in text.splitlines() if line]
-        self.assertTrue(origin.startswith("Command: pcor compare one.nc two.nc -m model.toml"), origin)
-        self.assertEqual(len(captions), len([name for name in names if name.endswith(".svg")]))
-        for caption in captions:
-            self.assertNotRegex(caption, r"Command:|\bDrag\b|\bchoose\b")
-        self.assertIn("Command: pcor compare", next((FOLDER / "figures").glob("*.svg")).read_text())
+    def setUp(self):
+        made = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
+        self.addCleanup(made.cleanup)
+        self.folder = Path(made.name)
+        subprocess.run([SAMPLE_REPORT, self.folder / "report.html"], check=True)
 
-    def test_impossible_figures_are_an_error_before_the_run(self):
-        words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]
-        for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "model.toml is also an input"),
-                                      ("one.nc/figures", CHROMIUM, "cannot be a folder")):
-            found = subprocess.run([*words, folder], cwd=FOLDER, env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
-            self.assertEqual((found.returncode, found.stdout), (1, ""))
-            self.assertIn(said, found.stderr)
-            self.assertEqual(found.stderr.count("\n"), 1)
-            self.assertFalse((FOLDER / "none.toml").exists() or (FOLDER / "figures2").exists())
+    def command(self, folder, *size):
+        return [PROGRAM, self.folder / "report.html", folder, *size]
 
-    def test_a_failed_run_keeps_earlier_figures(self):
-        run(TOOL, "inspect", "one.nc", "--figures", "kept")
-        before = {each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}
-        # The folder of the table goes while figures are drawn, so that it cannot be written.
-        gone = FOLDER / "gone"
-        slow = FOLDER / "removes"
-        slow.write_text(f"#!/bin/sh\nrm -rf '{gone}'\nexec '{CHROMIUM}' \"$@\"\n")
-        slow.chmod(0o755)
-        for folder in ("kept", "new/of/new"):
-            gone.mkdir()
-            words = [TOOL, "inspect", "one.nc", "--quiet", "--json", "gone/out.json", "--figures", folder]
-            found = subprocess.run(words, cwd=FOLDER, env={**os.environ, "CHROMIUM": str(slow)}, capture_output=True, text=True)
-            self.assertEqual(found.returncode, 1, found.stderr)
-        self.assertEqual({each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}, before)
-        self.assertFalse((FOLDER / "new").exists())
+    def figures(self, folder, *size, **environment):
+        subprocess.run(self.command(folder, *size), check=True, env={**os.environ, **environment}, timeout=120)
+        return sorted(folder.glob("*.svg")), sorted(folder.glob("*.png"))
+
+    def test_pictures_for_a_paper(self):
+        folder = self.folder / "pictures"
+        vectors, rasters = self.figures(folder)
+        self.assertEqual((len(vectors), len(rasters)), (PANELS, PANELS))
+        self.assertEqual(len(list(folder.iterdir())), 2 * PANELS + 1)
+        self.assertEqual(vectors[0].name, "01-residual-over-the-flight.svg")
+        captions = [line.split(": ", 1)[1] for line in (folder / "captions.txt").read_text().splitlines() if line]
+        self.assertEqual(len(captions), PANELS)
+        for vector, caption in zip(vectors, captions):
+            svg = xml.etree.ElementTree.parse(vector).getroot()
+            self.assertEqual(svg.tag, SVG + "svg")
+            self.assertTrue(caption.startswith(svg.find(SVG + "title").text))
+            self.assertIn(svg.find(SVG + "desc").text, caption)
+            self.assertNotRegex(caption, r"\bDrag\b|\bchoose\b")
+            words = list(svg.iter(SVG + "text"))
+            self.assertGreater(len(words), 4)
+            # In print 8 points at least; the width is in the 96 dots of an inch.
+            for each in words:
+                points = float(each.get("font-size")) * float(svg.get("width")) / float(svg.get("viewBox").split()[2]) * 0.75
+                self.assertGreaterEqual(points, 8, each.text)
+        for raster in rasters:
+            width, colour = coloured(raster)
+            self.assertGreaterEqual(width, 1600)
+            self.assertGreater(colour, 200, raster.name)
+
+    def test_pictures_for_a_column_and_a_slide(self):
+        for size, width in (("column", 325), ("slide", 1280)):
+            vectors, _ = self.figures(self.folder / size, size)
+            for vector in vectors:
+                self.assertEqual(float(xml.etree.ElementTree.parse(vector).getroot().get("width")), width, vector.name)
+
+    def test_old_pictures_are_removed_and_other_files_remain(self):
+        folder = self.folder / "again"
+        folder.mkdir()
+        (folder / "captions.txt").write_text("07-of-another-run: A title. A caption.\n../08-outside: A title.\n")
+        for name in ("07-of-another-run.svg", "07-of-another-run.png", "09-mine.png", "notes.txt"):
+            (folder / name).write_text("")
+        (self.folder / "08-outside.svg").write_text("")
+        self.figures(folder)
+        self.assertTrue((self.folder / "08-outside.svg").exists())
+        self.assertFalse(list(folder.glob("07-of-another-run.*")))
+        self.assertTrue((folder / "09-mine.png").exists() and (folder / "notes.txt").exists())
+        self.assertEqual(len(list(folder.iterdir())), 2 * PANELS + 3)
+
+    def test_without_pictures_nothing_is_written(self):
+        folder = self.folder / "none"
+        (self.folder / "no_report.html").write_text("<!DOCTYPE html><title>Other</title><p>Text")
+        for browser, report, words in (("/nowhere/chromium", "report.html", "/nowhere/chromium"),
+                                       (shutil.which("false"), "report.html", "failed"), (shutil.which("true"), "report.html", "no pictures"),
+                                       (CHROMIUM, "no_report.html", "no pictures"), (CHROMIUM, "absent.html", "absent.html")):
+            with self.subTest(browser=browser, report=report):
+                found = subprocess.run([PROGRAM, self.folder / report, folder], env={**os.environ, "CHROMIUM": str(browser)},
+                                       capture_output=True, text=True)
+                self.assertEqual(found.returncode, 1)
+                self.assertIn(words, found.stderr)
+                self.assertEqual(found.stderr.count("\n"), 1)
+                self.assertFalse(folder.exists())
 
     def test_temporary_folder_may_have_any_name(self):
         # Chromium makes a socket, whose path may have at most 107 characters, in the folder of temporary files.
-        temporary = FOLDER / ("it's my $HOME" + 120 * "x")
-        beside = FOLDER / "it's"
+        temporary = self.folder / ("it's my $HOME" + 120 * "x")
+        beside = self.folder / "it's"
         temporary.mkdir()
         beside.mkdir()
-        found = subprocess.run([TOOL, "inspect", "one.nc", "--figures", "quoted", "--quiet"], cwd=FOLDER,
-                               env={**os.environ, "TMPDIR": str(temporary)}, capture_output=True, text=True)
-        self.assertEqual(found.returncode, 0, found.stderr)
+        vectors, _ = self.figures(self.folder / "quoted", TMPDIR=str(temporary))
+        self.assertEqual(len(vectors), PANELS)
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertTrue(beside.exists())
 
     def test_a_stopped_run_writes_no_file(self):
-        temporary = FOLDER / "temporary"
+        temporary = self.folder / "temporary"
         temporary.mkdir()
-        slow = FOLDER / "slow"
-        stopped = FOLDER / "was stopped"
-        slow.write_text(f"#!/bin/sh\nuntil [ -e '{stopped}' ]; do sleep 0.05; done\n")
+        slow = self.folder / "slow"
+        slow.write_text("#!/bin/sh\nexec sleep 100\n")
         slow.chmod(0o755)
         # The run is stopped as soon as its temporary folder appears, and a little later.
         for delay in (0, 0.005, 0.5):
-            child = subprocess.Popen([TOOL, "inspect", "one.nc", "--figures", "stopped", "--quiet"], cwd=FOLDER,
+            child = subprocess.Popen(self.command(self.folder / "stopped"),
                                      env={**os.environ, "CHROMIUM": str(slow), "TMPDIR": str(temporary)})
             while not os.listdir(temporary):
-                self.assertIsNone(child.poll(), "the browser was not started")
+                self.assertIsNone(child.poll(), "no temporary folder was made")
             time.sleep(delay)
-            child.terminate()
-            self.assertEqual(child.wait(), -signal.SIGTERM)
-            stopped.touch()
-            end = time.monotonic() + 60  # a loaded machine takes seconds to end the browser
-            while os.listdir(temporary) and time.monotonic() < end:
-                time.sleep(0.1)
+            child.send_signal(signal.SIGTERM)
+            self.assertNotEqual(child.wait(timeout=60), 0)
             self.assertEqual(os.listdir(temporary), [])
-            self.assertFalse((FOLDER / "stopped").exists())
-            stopped.unlink()
+            self.assertFalse((self.folder / "stopped").exists())
 
 
 if __name__ == "__main__":

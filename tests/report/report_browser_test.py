@@ -9,14 +9,11 @@ Without chromium it is skipped (status 77), or fails if PCOR_REQUIRE_CHROMIUM is
 import base64
 import io
 import json
-import os
 import re
-import shutil
 import subprocess
 import sys
 import unittest
 import urllib.parse
-import xml.etree.ElementTree
 from pathlib import Path
 
 from browser import CHROMIUM, Browser, PageTest, skip_without
@@ -24,7 +21,6 @@ from browser import CHROMIUM, Browser, PageTest, skip_without
 SAMPLE_REPORT = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 PANELS = 13
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 def run(*command):
@@ -109,61 +105,6 @@ class ReportInBrowser(PageTest):
         pages = base64.b64decode(self.browser.ask("Page.printToPDF", printBackground=True)["data"])
         self.assertTrue(pages.startswith(b"%PDF"))
         self.assertGreater(len(pages), 50_000)
-
-    def figures(self, folder, use):
-        run(SAMPLE_REPORT, "--figures", folder, use)
-        return sorted(folder.glob("*.svg")), sorted(folder.glob("*.png"))
-
-    def test_pictures_for_a_paper(self):
-        folder = self.folder / "pictures"
-        vectors, rasters = self.figures(folder, "page")
-        self.assertEqual((len(vectors), len(rasters)), (PANELS, PANELS))
-        self.assertEqual(vectors[0].name, "01-residual-over-the-flight.svg")
-        titles = [line.split(": ", 1)[1] for line in (folder / "captions.txt").read_text().splitlines() if line]
-        self.assertEqual(len(titles), PANELS)
-        for vector, caption in zip(vectors, titles):
-            svg = xml.etree.ElementTree.parse(vector).getroot()
-            self.assertEqual(svg.tag, SVG + "svg")
-            self.assertTrue(caption.startswith(svg.find(SVG + "title").text))
-            self.assertIn(svg.find(SVG + "desc").text, caption)
-            words = list(svg.iter(SVG + "text"))
-            self.assertGreater(len(words), 4)
-            # In print 8 points at least; the width is in the 96 dots of an inch.
-            for each in words:
-                points = float(each.get("font-size")) * float(svg.get("width")) / float(svg.get("viewBox").split()[2]) * 0.75
-                self.assertGreaterEqual(points, 8, each.text)
-        for raster in rasters:
-            picture = pixels(raster)
-            self.assertGreaterEqual(picture.shape[1], 1600)
-            self.assertGreater(coloured(picture), 200, raster.name)
-
-    def test_pictures_for_a_column_and_a_slide(self):
-        for use, width in (("column", 325), ("slide", 1280)):
-            vectors, _ = self.figures(self.folder / use, use)
-            for vector in vectors:
-                self.assertEqual(float(xml.etree.ElementTree.parse(vector).getroot().get("width")), width, vector.name)
-
-    def test_old_pictures_are_removed_and_other_files_remain(self):
-        folder = self.folder / "again"
-        folder.mkdir()
-        (folder / "captions.txt").write_text("07-of-another-run: A title. A caption.\n../08-outside: A title.\n")
-        for name in ("07-of-another-run.svg", "07-of-another-run.png", "09-mine.png", "notes.txt"):
-            (folder / name).write_text("")
-        (self.folder / "08-outside.svg").write_text("")
-        self.figures(folder, "page")
-        self.assertTrue((self.folder / "08-outside.svg").exists())
-        self.assertFalse(list(folder.glob("07-of-another-run.*")))
-        self.assertTrue((folder / "09-mine.png").exists() and (folder / "notes.txt").exists())
-        self.assertEqual(len(list(folder.iterdir())), 2 * PANELS + 3)
-
-    def test_without_a_browser_no_picture_is_written(self):
-        folder = self.folder / "none"
-        for browser, words in (("/nowhere/chromium", "/nowhere/chromium"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
-            found = subprocess.run([SAMPLE_REPORT, "--figures", folder], env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
-            self.assertEqual(found.returncode, 1)
-            self.assertIn(words, found.stderr)
-            self.assertEqual(found.stderr.count("\n"), 1)
-            self.assertFalse(folder.exists())
 
 
 class ReportUnderTheHand(PageTest):

@@ -35,9 +35,9 @@ def blocks(text):
 
 
 def commands_of(content):
-    """Commands that a test can run: pcor, copies of data, and tools of the checkout."""
+    """Commands that a test can run: pcor, pcor-figures, copies of data, and tools of the checkout."""
     lines = content.replace("\\\n", "").splitlines()
-    return [line for line in lines if re.match(r"pcor |cp data/|tools/reference_pages ", line)]
+    return [line for line in lines if re.match(r"pcor |pcor-figures |cp data/|tools/reference_pages ", line)]
 
 
 def numbers(line):
@@ -60,6 +60,7 @@ class PageTest(unittest.TestCase):
         path = self.folder / "build/release/tools"
         path.mkdir(parents=True)
         (path / "pcor").symlink_to(TOOL)
+        (path / "pcor-figures").symlink_to(SOURCE / "tools/pcor-figures")
         self.environment = {**os.environ, "PATH": f"{path}:{os.environ['PATH']}", "PCOR_MODELS": str(SOURCE / "data/models")}
 
     def run_command(self, command):

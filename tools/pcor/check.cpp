@@ -191,7 +191,7 @@ void print(const Checks& checks, const CheckArguments& options, const std::optio
   if (!not_run.empty()) say("not run: {}\n", fmt::join(not_run, ", "));
   if (is_verbose()) print_details(checks);
   say_notes(checks.notes);
-  say_written({options.common.report, options.common.figures, options.table, options.common.json});
+  say_written({options.common.report, options.table, options.common.json});
   if (const std::string next = next_step(checks, options, model); !next.empty()) say("{}\n", next);
 }
 
@@ -244,7 +244,7 @@ void run(const CheckArguments& options) {
   if (!options.table.empty()) table = flight_table(flights, model, check_options, checks);
   if (!is_speaker()) return;
   OutputTransaction together;
-  if (wants_report(options.common))
+  if (!options.common.report.empty())
     write_report_of_run(check_report(checks),
                         {models_of(options), options.flights.flights, {}, next_step(checks, options, model)},
                         options.common);

@@ -86,18 +86,6 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_repo
         .add_option("--report", options.report, "write a self-contained report with pictures to FILE.html")
         ->check(is_file_name())
         ->type_name("FILE.html");
-    CLI::Option* const figures = command
-                                     .add_option("--figures", options.figures,
-                                                 "write each picture of the report into FOLDER, as SVG and "
-                                                 "PNG, with captions; requires Chromium")
-                                     ->check(is_file_name())
-                                     ->type_name("FOLDER");
-    command
-        .add_option("--figures-for", options.figures_for,
-                    "size of the figures: a page 180 mm wide, a column of 86 mm, or a slide")
-        ->check(CLI::IsMember({"page", "column", "slide"}))
-        ->needs(figures)
-        ->capture_default_str();
   }
   CLI::Option* const quiet = command.add_flag("--quiet", options.quiet, "print no text");
   command.add_flag_callback("--verbose", say_everything, "print all details, and notes in full")
@@ -190,11 +178,9 @@ void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<
 
 void prepare_outputs(const CommonOptions& common, std::vector<fs::path> outputs,
                      const std::vector<fs::path>& inputs) {
-  outputs.insert(outputs.end(), {common.json, common.report, common.figures});
+  outputs.insert(outputs.end(), {common.json, common.report});
   refuse_overwriting(outputs, inputs);
-  outputs.pop_back();
   for (const fs::path& output : outputs) require_writable(output);
-  require_figures(common);
 }
 
 }  // namespace pcor::tool

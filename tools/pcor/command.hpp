@@ -19,8 +19,6 @@ struct CommonOptions {
   std::string json{};  ///< destination of the machine-readable result, `-` for standard output; empty if not
                        ///< requested
   std::string report{};   ///< destination of the self-contained HTML report; empty if not requested
-  std::string figures{};  ///< folder for the pictures of the report; empty if not requested
-  std::string figures_for = "page";
   bool quiet = false;  ///< no output for people
 };
 
@@ -120,7 +118,7 @@ void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);
 
 /// Checks the outputs of a sub-command with a report before its work: `refuse_overwriting` and
-/// `require_writable` for `outputs` and the common ones, and the browser of the figures. @throws Error
+/// `require_writable` for `outputs` and the common ones. @throws Error
 void prepare_outputs(const CommonOptions& common, std::vector<std::filesystem::path> outputs,
                      const std::vector<std::filesystem::path>& inputs);
 

@@ -170,8 +170,9 @@ void print_model(const ModelComparison& model, bool with_name) {
   // Differences over time have no R2.
   if (std::isfinite(model.r_squared))
     say("R2, 1 - (rms / standard deviation of the reference's delta-p)^2: {:.4f}\n", model.r_squared);
-  say("the residuals are correlated in time: autocorrelation time {:.1f} samples\n",
-      model.autocorrelation_time);
+  if (std::isfinite(model.autocorrelation_time))  // not of a residual without scatter
+    say("the residuals are correlated in time: autocorrelation time {:.1f} samples\n",
+        model.autocorrelation_time);
   if (model.reference_error > 0.0)
     say("The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
         model.reference_error);
@@ -394,8 +395,7 @@ void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& mo
   say_notes(comparison.notes);
   std::vector<std::string> written;
   for (const std::filesystem::path& file : residual_files(options)) written.push_back(file.string());
-  written.insert(written.end(),
-                 {options.common.report, options.common.figures, options.table, options.common.json});
+  written.insert(written.end(), {options.common.report, options.table, options.common.json});
   say_written(written);
   say("{}\n", next_step(result, models, options));
 }
@@ -514,7 +514,7 @@ void run(const CompareArguments& options) {
   compare_options.separates_atmosphere = !options.comparison.references.empty();
   if (!residuals.empty())
     compare_options.max_series = options.comparison.flights.size();
-  else if (!wants_report(options.common))
+  else if (options.common.report.empty())
     compare_options.max_series = 0;  // other results are numbers
   ComparisonWithGps result;
   Comparison& comparison = result.comparison;
@@ -529,7 +529,7 @@ void run(const CompareArguments& options) {
   OutputTransaction together;
   for (std::size_t i = 0; i < residuals.size(); ++i)
     write_residuals(comparison, i, flights[i], residuals[i], history_of(options));
-  if (wants_report(options.common))
+  if (!options.common.report.empty())
     write_report_of_run(comparison_report(comparison),
                         {options.models, options.comparison.flights, {}, next_step(result, models, options)},
                         options.common);

@@ -18,7 +18,6 @@
 #include <pcor/realtime/chain.hpp>
 #include "communicator.hpp"
 #include "model_name.hpp"
-#include "processes.hpp"
 
 namespace pcor::tool {
 
@@ -83,7 +82,6 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
   add_time_stamp_option(command, options.timestamp_alignment);
   command.add_flag("--skip-unreadable", options.skip_unreadable,
                    "skip files that are damaged or not flights, with a warning");
-  add_processes_option(command);
   command.parse_complete_callback([&options] {
     options.references = in_order(options.references);
     if (options.skip_unreadable) leave_out_unreadable(options.flights);

@@ -20,11 +20,11 @@ namespace {
 
 constexpr std::size_t stack_bytes = std::size_t{64} << 10;
 constexpr int seconds_between_looks = 5;
+constexpr int status_of_crash = 1;
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 std::array<struct sigaction, crashes.size()> earlier;  // handlers of a sanitizer, if any
 volatile std::sig_atomic_t is_running = 0;
-volatile std::sig_atomic_t status_of_crash = 1;
 
 void print(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
@@ -116,8 +116,7 @@ void handle(int signal, void (*handler)(int), int flags, struct sigaction* befor
 
 }  // namespace
 
-CrashesExplained::CrashesExplained(int status) {
-  status_of_crash = status;
+CrashesExplained::CrashesExplained() {
   what_is_busy();  // the first backtrace loads a library, which a signal handler must not do
   // Separate stack: the stack of the library may be exhausted.
   static std::byte stack[stack_bytes];

@@ -219,7 +219,7 @@ void print(const Diagnosis& diagnosis, const ModelDefinition& model, const Chose
     print_others(diagnosis, options.full);
   }
   say_notes(diagnosis.notes);
-  say_written({options.common.report, options.common.figures, options.common.json});
+  say_written({options.common.report, options.common.json});
   say("{}\n", next_command(diagnosis, model, options));
 }
 
@@ -232,7 +232,7 @@ void run(const DiagnoseArguments& options) {
   const ChosenReferences references = references_to_fit(options.comparison, model, flights);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
-  if (!wants_report(options.common)) diagnose_with.series_of.emplace();
+  if (options.common.report.empty()) diagnose_with.series_of.emplace();
   diagnose_with.formulas = candidate_formulas(options.candidates, model, flights);
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;
@@ -254,7 +254,7 @@ void run(const DiagnoseArguments& options) {
   }
   if (!is_speaker()) return;
   OutputTransaction together;
-  if (wants_report(options.common))
+  if (!options.common.report.empty())
     write_report_of_run(
         diagnosis_report(diagnosis, model, &tried),
         {{options.model}, options.comparison.flights, {}, next_command(diagnosis, model, options)},

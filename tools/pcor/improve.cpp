@@ -82,7 +82,7 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   say("stopped: {}\n", improvement.why_stopped);
   if (is_verbose()) print_unexplained(improvement.steps.back().diagnosis.unexplained);
   say_notes(improvement.fit.notes);
-  say_written({options.output, options.common.report, options.common.figures, options.common.json});
+  say_written({options.output, options.common.report, options.common.json});
   say("{}\n", next_step(improvement, options));
 }
 
@@ -121,7 +121,7 @@ void run(const ImproveArguments& options) {
   if (!is_speaker()) return;
   OutputTransaction together;
   deliver(improvement.model, options.output, inputs);
-  if (wants_report(options.common))
+  if (!options.common.report.empty())
     write_report_of_run(improvement_report(improvement, model, &tried),
                         {{options.model, options.output},
                          options.comparison.flights,

@@ -393,7 +393,7 @@ void run(const InspectArguments& options) {
                   fmt::format("{}: no model can be written: {}", first.path, first.why_no_model));
     deliver_with_candidates(first, options.model);
   }
-  if (wants_report(options.common)) {
+  if (!options.common.report.empty()) {
     write_report_of_run(inspection_report(readable),
                         {{}, options.flights, {}, first.next.empty() ? "" : "Next: " + first.next.front()},
                         options.common);
@@ -401,7 +401,7 @@ void run(const InspectArguments& options) {
   json.write(result);
   together.appear();
   if (!text) return;
-  say_written({options.model, options.common.report, options.common.figures, options.common.json});
+  say_written({options.model, options.common.report, options.common.json});
   print_next(first);
 }
 

@@ -1,3 +1,5 @@
 #include "program.hpp"
 
-int main(int argc, char** argv) { pcor::tool::end_process(pcor::tool::run_program(argc, argv)); }
+int main(int argc, char** argv) {
+  pcor::tool::end_process(pcor::tool::run_program(argc, argv, pcor::serial_communicator()));
+}

@@ -20,7 +20,6 @@
 #include "comparison.hpp"
 #include "model_name.hpp"
 #include "model_selector.hpp"
-#include "processes.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
 
@@ -227,12 +226,12 @@ std::vector<ProcessTask> tasks_of(const ProcessArguments& options, bool folder) 
                                           : std::vector<ProcessTask>{{flights.front(), options.output, {}}};
   std::vector<fs::path> models{options.model};
   if (!options.models.empty()) models = models_in(options.models);
-  refuse_overwriting({options.common.json, options.common.report, options.common.figures}, flights);
+  refuse_overwriting({options.common.json, options.common.report}, flights);
   for (ProcessTask& task : tasks) {
     task.history = command_line(task, options);
     std::vector<fs::path> inputs = models;
     inputs.push_back(task.input);
-    refuse_overwriting({task.output, options.common.json, options.common.report, options.common.figures},
+    refuse_overwriting({task.output, options.common.json, options.common.report},
                        inputs);
   }
   return tasks;
@@ -292,7 +291,6 @@ void run(const ProcessArguments& options) {
   const std::vector<ProcessTask> tasks = tasks_of(options, folder);
   const bool many = tasks.size() > 1;
   require_writable(options.common.report);
-  require_figures(options.common);
   JsonResult json(options.common);
   const ModelSelector model_of = models_of(options);
   std::optional<OutputFolder> output_folder;
@@ -320,7 +318,7 @@ void run(const ProcessArguments& options) {
   for (ProcessedFlight& flight : result.flights) flight.model_label = options.model;
   const std::vector<ProcessedFlight>& flights = result.flights;
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
-  if (wants_report(options.common) && !none) {
+  if (!options.common.report.empty() && !none) {
     write_report_of_run(process_report(flights, process.process.suffix),
                         {{options.model + options.models}, options.inputs, {}, next_step(flights)},
                         options.common);
@@ -342,7 +340,7 @@ void run(const ProcessArguments& options) {
   } else if (!many) {
     say("{} is up to date for this version, flight, model and options\n", first.output.string());
   }
-  say_written({options.common.report, options.common.figures, options.common.json});
+  say_written({options.common.report, options.common.json});
   if (const std::string next = next_step(flights); !next.empty()) say("{}\n", next);
 }
 

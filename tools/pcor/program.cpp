@@ -20,7 +20,6 @@
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/base/error.hpp>
 #include <pcor/base/message.hpp>
-#include <pcor/parallel/fork_communicator.hpp>
 
 #include "program.hpp"
 
@@ -29,7 +28,6 @@
 #include "crash.hpp"
 #include "events.hpp"
 #include "model_name.hpp"
-#include "processes.hpp"
 #include "report_origin.hpp"
 #include "text.hpp"
 #include "usage.hpp"
@@ -142,7 +140,7 @@ Ending failed(const Error& error, bool at_once) {
   finish_text();
   std::fflush(stdout);
   const Error of_all = comm().leave(error).value_or(error);
-  if (*of_all.what() != '\0') tell(fmt::format("pcor: {}", of_all.what()));
+  tell(fmt::format("pcor: {}", of_all.what()));
   send_error(sanitize_line(of_all.what()), to_string(of_all.code()));
   // HDF5 may keep unwritten data after any error, and would try to write it at exit.
   return {work_not_done, at_once || is_final(of_all) || comm().size() == 1};
@@ -150,22 +148,9 @@ Ending failed(const Error& error, bool at_once) {
 
 }  // namespace
 
-Ending run_program(int argc, char** argv) {
-  fill_closed_streams();  // before connections of processes exist, which would take their numbers
-  std::signal(SIGCHLD, SIG_DFL);
-  try {
-    ForkCommunicator comm(processes_to_begin({argv + 1, argv + argc}));
-    return run_program(argc, argv, comm, comm.rank() == 0 ? work_not_done : ForkCommunicator::has_told);
-  } catch (const Error& error) {
-    tell(fmt::format("pcor: {}", error.what()));
-    send_error(error.what(), to_string(error.code()));
-    return {work_not_done};
-  }
-}
-
-Ending run_program(int argc, char** argv, Communicator& comm, int status_of_crash) {
+Ending run_program(int argc, char** argv, Communicator& comm) {
   mind_signals();
-  const CrashesExplained explained(status_of_crash);
+  const CrashesExplained explained;
   fill_closed_streams();
   set_communicator(comm);
   if (!is_speaker()) print_nothing();

@@ -11,12 +11,8 @@ struct Ending {
   bool at_once = false;
 };
 
-/// Parses the command line and runs it, in the requested number of processes.
-Ending run_program(int argc, char** argv);
-
-/// Runs the command line as one of the ranks.
-/// @param status_of_crash exit status of this process if a library crashes
-Ending run_program(int argc, char** argv, Communicator& comm, int status_of_crash = 1);
+/// Parses the command line and runs it, as one of the ranks.
+Ending run_program(int argc, char** argv, Communicator& comm);
 
 /// Ends this process with the given status.
 [[noreturn]] void end_process(const Ending& ending);

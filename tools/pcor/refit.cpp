@@ -35,7 +35,6 @@ struct RefitArguments {
   std::vector<std::string> stages;
   double memory_mib = 512.0;
   bool prior = false;
-  bool search = false;
   bool force = false;
 };
 
@@ -80,7 +79,6 @@ RefitOptions refit_options(const RefitArguments& options, const FlightSet& holdo
   for (const std::string& stage : stages) refit.stages.push_back(parse_stage(stage));
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
-  refit.search = options.search;
   refit.trust_reference = options.fit.trust_reference;
   refit.training_share = options.fit.training_share;
   refit.holdout = holdout;
@@ -333,7 +331,7 @@ void run(const RefitArguments& options) {
   }
   const bool is_refused = !result.worse.empty() && !options.force;
   std::optional<Comparison> comparison;
-  if (wants_report(options.common))
+  if (!options.common.report.empty())
     comparison = before_against_after(result, model, references.used, all, options);
   std::optional<FlightTable> table;
   if (!options.table.empty())
@@ -360,7 +358,7 @@ void run(const RefitArguments& options) {
     else
       print_short(result, options);
     say_notes(result.notes);
-    say_written({options.common.report, options.common.figures, options.table, options.common.json});
+    say_written({options.common.report, options.table, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (!with_text) return;
@@ -394,9 +392,6 @@ std::function<void()> add_refit(CLI::App& program) {
   command->add_flag("--prior", options->prior,
                     "apply a Gaussian prior at the starting values, with the covariance in the model file, "
                     "otherwise with the typical size of each effect as standard error");
-  command->add_flag(
-      "--search", options->search,
-      "find the starting values by a global search between the bounds, for coefficients that are not linear");
   command
       ->add_option("--memory", options->memory_mib,
                    "MiB of samples kept in memory between passes over the flights; the rest is read again")

@@ -7,33 +7,18 @@
 #include <utility>
 
 #include <pcor/base/utc.hpp>
-#include <pcor/report/figures.hpp>
 #include "communicator.hpp"
-#include "processes.hpp"
 
 namespace pcor::tool {
 namespace {
 
 std::string command_of_this_run;
 
-FigureUse use_named(const std::string& name) {
-  return name == "column" ? FigureUse::column : name == "slide" ? FigureUse::slide : FigureUse::page;
-}
-
 }  // namespace
 
 void remember_command(int count, const char* const* words) {
   command_of_this_run = "pcor";
-  for (const std::string& word : without_processes({words + 1, words + count}))
-    command_of_this_run += " " + shell_quote(word);
-}
-
-bool wants_report(const CommonOptions& options) {
-  return !options.report.empty() || !options.figures.empty();
-}
-
-void require_figures(const CommonOptions& options) {
-  if (is_speaker() && !options.figures.empty()) pcor::require_figures(options.figures);
+  for (int i = 1; i < count; ++i) command_of_this_run += " " + shell_quote(words[i]);
 }
 
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options) {
@@ -48,8 +33,7 @@ void write_report_of_run(Report report, const ReportFiles& files, const CommonOp
   add(files.held_out.empty() ? "Flights" : "Fitted flights", files.flights);
   add("Held-out flights", files.held_out);
   add("Choices", choices_of_this_run());
-  if (!options.report.empty()) write_report(report, options.report);
-  if (!options.figures.empty()) write_figures(report, options.figures, use_named(options.figures_for));
+  write_report(report, options.report);
 }
 
 }  // namespace pcor::tool

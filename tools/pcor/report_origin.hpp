@@ -19,15 +19,8 @@ struct ReportFiles {
   std::string next{};  ///< "To apply it: pcor process ..."; may be empty
 };
 
-/// Whether a report is requested, as a page or as figures.
-bool wants_report(const CommonOptions& options);
-
-/// Checks, before the work, that the requested figures can be made. @throws Error if they cannot.
-void require_figures(const CommonOptions& options);
-
-/// Writes a report with its provenance at the foot: the command, the date, the program, and the files; as a
-/// page, as figures, or both, as the options request.
-/// @throws Error as do `write_report` and `write_figures`.
+/// Writes the report named by the options, with its provenance at the foot: the command, the date, the program,
+/// and the files. @throws Error as does `write_report`.
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options);
 
 }  // namespace pcor::tool

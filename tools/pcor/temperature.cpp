@@ -71,12 +71,12 @@ void print_law_errors(const TemperatureResult& result) {
 
 void print_coefficients(const TemperatureResult& result) {
   say("T corrected = T + a0 + a1 t + ..., t in degC\n");
-  say("{:<4} {:>12} {:>22} {:>24} {:>27} {:>5}\n", "", "likelihood",
-      result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "likelihood interval",
-      "least squares on height", "unit");
+  say("{:<4} {:>12} {:>22} {:>27} {:>5}\n", "", "likelihood",
+      result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "least squares on height",
+      "unit");
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
-    say("a{:<3} {:>+12.5g} {:>22.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
-        result.likelihood.standard_errors[k], profile_text(result.profile[k]),
+    say("a{:<3} {:>+12.5g} {:>22.2g} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
+        result.likelihood.standard_errors[k],
         fmt::format("{:+.4g} +- {:.2g}", result.least_squares.coefficients[k],
                     result.least_squares.standard_errors[k]),
         coefficient_unit(k));
@@ -186,7 +186,7 @@ void run(const TemperatureArguments& options) {
   if (!is_speaker()) return;
   const bool is_refused = !result.worse.empty() && !with.dry_air;
   OutputTransaction together;
-  if (wants_report(options.common))
+  if (!options.common.report.empty())
     write_report_of_run(
         temperature_report(result),
         {{options.model, options.output}, options.comparison.flights, {}, next_step(result, options)},
@@ -201,7 +201,7 @@ void run(const TemperatureArguments& options) {
   if (with_text) {
     if (options.iterate) print(in_turn);
     print(result);
-    say_written({options.common.report, options.common.figures, options.common.json});
+    say_written({options.common.report, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, with.dry_air, result.model);
   if (!with_text) return;
@@ -229,7 +229,7 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->check(CLI::IsMember({"auto", "0", "1", "2"}))
       ->capture_default_str();
   command->add_option("--slope", options->slope, "treatment of the slope of isobars")
-      ->check(CLI::IsMember({"fitted", "none", "level-legs", "climb-descent", "whole-flight", "geostrophic"}))
+      ->check(CLI::IsMember({"fitted", "none", "level-legs", "climb-descent", "whole-flight"}))
       ->capture_default_str();
   command
       ->add_option("--slope-size", options->slope_size,

@@ -47,13 +47,6 @@ class OutputTransaction {
   OutputTransaction(const OutputTransaction&) = delete;
   OutputTransaction& operator=(const OutputTransaction&) = delete;
 
-  /// Creates a directory for outputs, and its parents. New directories are removed if no output appears, also
-  /// if a signal ends the program. @throws Error if it cannot be created.
-  void make_folder(const std::filesystem::path& folder);
-
-  /// Removes a file of an earlier run after the outputs have appeared.
-  void remove(const std::filesystem::path& earlier);
-
   /// Renames all waiting files to their targets. @throws Error if a rename fails; earlier ones remain.
   void appear();
 
@@ -66,16 +59,14 @@ class OutputTransaction {
   };
   OutputTransaction* whole_;  // the outermost transaction: itself or its parent
   std::vector<Waiting> waiting_;
-  std::vector<std::filesystem::path> folders_;  // created directories, parents first
-  std::vector<std::filesystem::path> earlier_;
 };
 
 /// Path at which a file committed to `target` can be read: the target, or its hidden file during a
 /// transaction.
 std::filesystem::path readable_output(const std::filesystem::path& target);
 
-/// Removes at most 128 unfinished files of this process, and the directories created for them; for a signal
-/// handler that then ends the process, as SIGINT would.
+/// Removes at most 128 unfinished files of this process; for a signal handler that then ends the process, as
+/// SIGINT would.
 void remove_unfinished_files() noexcept;
 
 }  // namespace pcor

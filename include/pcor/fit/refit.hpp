@@ -51,8 +51,6 @@ struct RefitOptions {
   /// standard errors: `ParameterInfo::calibration_uncertainty`, or `[uncertainty]` of the model. Stated
   /// errors of the law of a second system are always included.
   bool trust_reference = false;
-  /// Global search of the starting point between the bounds, for parameters with a nonlinear residual.
-  bool search = false;
   /// Fraction of each flight used, from its start, 0 to 1; the rest is held out.
   double training_share = 1.0;
   FlightSet holdout{};  ///< flights excluded from the fit

@@ -18,9 +18,8 @@ struct Message;
 /// each processes some of the flights, and results are gathered on all ranks: every rank obtains the same
 /// result, equal to that of a serial run bit by bit on identical processors.
 ///
-/// This class is a group of one rank. Derived classes implement the exchange of bytes: `ForkCommunicator`,
-/// and `MpiCommunicator` of `pcor_mpi`. All ranks call the same functions in the same order, each from one
-/// thread.
+/// This class is a group of one rank. A derived class implements the exchange of bytes: `MpiCommunicator` of
+/// `pcor_mpi`. All ranks call the same functions in the same order, each from one thread.
 class Communicator {
  public:
   Communicator() = default;
