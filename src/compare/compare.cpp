@@ -393,7 +393,7 @@ void write_residuals(const Comparison& comparison, std::size_t number, const Fli
   const FlightResiduals& residuals = comparison.flights.at(number);
   FileDescription description;
   description.history = history;
-  description.title = "Residuals of pressure corrections against " + comparison.reference;
+  description.title = "Residuals of pressure corrections, reference: " + comparison.reference;
   FlightWriter writer(output, input, description);
   std::vector<std::pair<std::size_t, std::vector<double>>> columns;
   const auto define = [&](const std::string& name, const std::string& long_name, std::vector<double> values) {
@@ -405,16 +405,20 @@ void write_residuals(const Comparison& comparison, std::size_t number, const Fli
     columns.emplace_back(writer.define(variable), std::move(values));
   };
   for (std::size_t m = 0; m < residuals.values.size(); ++m) {
+    const std::string& model = comparison.models[m].name;
     define(fmt::format("RESIDUAL_{}", m + 1),
-           fmt::format("Static pressure of {} minus static pressure of the model {}", comparison.reference,
-                       comparison.models[m].name),
+           comparison.is_static_pressure
+               ? fmt::format("Static pressure of {} minus static pressure of the model {}",
+                             comparison.reference, model)
+               : fmt::format("Residual of {}, reference minus model {}", comparison.reference, model),
            residuals.values[m]);
-    define(fmt::format("PCOR_{}", m + 1),
-           fmt::format("Static defect (delta-p) of the model {}", comparison.models[m].name),
+    define(fmt::format("PCOR_{}", m + 1), fmt::format("Static defect (delta-p) of the model {}", model),
            residuals.model_defects[m]);
     define(fmt::format("PCOR_REFERENCE_{}", m + 1),
-           fmt::format("Static defect (delta-p) that the reference implies for the model {}",
-                       comparison.models[m].name),
+           comparison.is_static_pressure
+               ? fmt::format("Static defect (delta-p) that the reference implies for the model {}", model)
+               : fmt::format("Static defect (delta-p) of the model {} plus residual of {}", model,
+                             comparison.reference),
            residuals.reference_defects[m]);
   }
 

@@ -7,16 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include <pcor/base/utc.hpp>
 #include "base/phrasing.hpp"
-#include "numerics/missing.hpp"
-#include "report/columns.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
-#include "residuals/report_flight.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -42,105 +38,78 @@ std::string title_of(const std::string& what, const Comparison& comparison, cons
   return comparison.models.size() == 1 ? what : what + ", " + model.name;
 }
 
-/// Concatenated series of all flights; NaN for a flight without the series.
-/// @param series a member of `FlightResiduals`, or a function of it
-template <class Series>
-std::vector<double> joined(const Comparison& comparison, const Series& series) {
-  std::vector<double> values;
-  for (const FlightResiduals& flight : comparison.flights) {
-    const std::vector<double>& part = std::invoke(series, flight);
-    for (const std::size_t i : used(flight)) values.push_back(part.empty() ? nan : part[i]);
-  }
-  return values;
-}
-
 }  // namespace
 
 template <class Series>
 void ComparisonPanels::add(const std::string& name, const std::string& title, const Series& series) {
-  report_.columns.push_back({name, title, "hPa", joined(comparison_, series)});
+  report().columns.push_back({name, title, "hPa", samples_.joined(comparison_.flights, series)});
 }
 
 ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(comparison) {
-  for (const FlightResiduals& flight : comparison.flights) {
-    const std::vector<std::size_t> records = used(flight);
-    if (!records.empty()) add_flight(report_, *flight.samples, records);
-  }
-  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    add(residual_column(m), title_of("residual", comparison, comparison.models[m]),
-        [m](const FlightResiduals& f) -> const std::vector<double>& { return f.values[m]; });
-    residuals_.push_back(residual_column(m));
-  }
-  const auto variable = [&](const char* name, const char* title, const char* unit, const auto& series) {
-    std::vector<double> values = joined(comparison_, series);
-    if (!has_value(values)) return;
-    report_.columns.push_back({name, title, unit, std::move(values)});
-    variables_.emplace_back(name);
-  };
+  for (const FlightResiduals& flight : comparison.flights) samples_.add_flight(flight.samples, used(flight));
   using F = FlightResiduals;
   using V = std::vector<double>;
-  const auto motion = [](V FlightMotion::*series) {
-    return [series](const F& f) -> const V& { return f.samples->motion.*series; };
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    add(residual_column(m), title_of("residual", comparison, comparison.models[m]),
+        [m](const F& f) -> const V& { return f.values[m]; });
+    residuals_.push_back(residual_column(m));
+  }
+  const auto variable = [&](const std::string& name, const std::string& title, const char* unit,
+                            const auto& series) {
+    const bool is_added = samples_.add_column(name, title, unit, comparison.flights, series);
+    if (is_added) variables_.push_back(name);
+    return is_added;
+  };
+  const auto motion = [&](const char* name) {
+    if (samples_.add_motion(name)) variables_.emplace_back(name);
   };
   variable("mach", "Mach number", "", &F::mach);
   variable("pressure", "measured static pressure", "hPa", &F::static_pressure);
-  variable("attack", "angle of attack", "deg", motion(&FlightMotion::attack));
-  variable("sideslip", "sideslip", "deg", motion(&FlightMotion::sideslip));
+  motion("attack");
+  motion("sideslip");
   variable("ratio", "measured q/p", "", &F::dynamic_ratio);
-  variable("airspeed", "true airspeed", "m/s", motion(&FlightMotion::airspeed));
-  variable("altitude", "altitude", "m", motion(&FlightMotion::altitude));
-  variable("vertical_speed", "vertical speed", "m/s", motion(&FlightMotion::vertical_speed));
-  variable("roll", "roll", "deg", motion(&FlightMotion::roll));
+  for (const char* const name : {"true_airspeed", "altitude", "vertical_speed", "roll"}) motion(name);
   variable("wanted", "delta-p, reference", "hPa",
            [](const F& f) -> const V& { return f.reference_defects.front(); });
   defects_.emplace_back("wanted");
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
     const std::string name = fmt::format("model{}", m + 1);
     const std::string title = comparison.models.size() == 1 ? "the model" : comparison.models[m].name;
-    variable(name.c_str(), ("delta-p, " + title).c_str(), "hPa",
-             [m](const F& f) -> const V& { return f.model_defects[m]; });
-    if (!variables_.empty() && variables_.back() == name) defects_.push_back(name);
+    if (variable(name, "delta-p, " + title, "hPa",
+                 [m](const F& f) -> const V& { return f.model_defects[m]; }))
+      defects_.push_back(name);
   }
-  const auto on_map = [&](const char* name, const char* title, const char* unit, const auto& series) {
-    add_if_present(report_, ReportColumn{name, title, unit, joined(comparison_, series)});
-  };
-  on_map("latitude", "latitude", "deg", [](const F& f) -> const V& { return f.samples->latitude; });
-  on_map("longitude", "longitude", "deg", [](const F& f) -> const V& { return f.samples->longitude; });
+  samples_.add_position();
 }
 
 void ComparisonPanels::add_panels() {
   const ModelComparison& last = comparison_.models.back();
-  report_.items.emplace_back(TimePanel{
+  report().items.emplace_back(TimePanel{
       "Residual in time", "Residual: reference minus model; regimes are shaded.", residuals_, "residual"});
-  add_strip(report_);
-  report_.items.emplace_back(
+  add_strip(report());
+  report().items.emplace_back(
       RegimeTable{"By regime", "Bias and rms of the residual in each regime.", residuals_});
-  add_regimes(report_, residuals_);
-  report_.items.emplace_back(BinnedPanel{
+  add_regimes(report(), residuals_);
+  report().items.emplace_back(BinnedPanel{
       "Residual against a variable",
       "A slope or curvature larger than the error bars indicates a missing effect or a wrong coefficient.",
       residuals_, variables_, std::max(1.0, last.autocorrelation_time), "residual"});
-  report_.items.emplace_back(
+  report().items.emplace_back(
       PlanePanel{title_of("Residual over Mach number and pressure", comparison_, last),
                  "Errors of the model over its envelope: a region of one colour has a bias.", "mach",
                  "pressure", residuals_.back()});
-  add_distributions(report_, residuals_);
-  std::vector<ReportBarb> wind;
-  for (const FlightResiduals& flight : comparison_.flights) {
-    const std::vector<ReportBarb> part = wind_of(*flight.samples);
-    wind.insert(wind.end(), part.begin(), part.end());
-  }
-  add_track(report_, title_of("Residual on the map", comparison_, last),
+  add_distributions(report(), residuals_);
+  add_track(report(), title_of("Residual on the map", comparison_, last),
             "Ground track: one colour over a leg, or for one heading, indicates a dependence on the place or "
             "the direction.",
-            residuals_.back(), std::move(wind));
+            residuals_.back());
   if (!comparison_.is_static_pressure) return;
-  report_.items.emplace_back(TimePanel{
+  report().items.emplace_back(TimePanel{
       comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
                                      : "Delta-p of the reference and of the models",
       fmt::format("Delta-p implied by the reference ({}), and delta-p of the model.", comparison_.reference),
       defects_, "delta-p"});
-  report_.items.emplace_back(
+  report().items.emplace_back(
       PairPanel{title_of("Delta-p of the reference against that of the model", comparison_, last),
                 "A perfect model lies on the line.",
                 defects_.back(),
@@ -158,7 +127,7 @@ void ComparisonPanels::add_pairs() {
   const auto pair = [&](const char* title, const std::string& caption, const char* x, const char* y,
                         const LineFit& fit) {
     const std::vector<ReportLine> lines{{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
-    report_.items.emplace_back(PairPanel{title, caption + note(fit), x, y, lines});
+    report().items.emplace_back(PairPanel{title, caption + note(fit), x, y, lines});
   };
   if (comparison_.total_pressure) {
     add("total", "total pressure of the model's system", &FlightResiduals::total_pressure);
@@ -171,11 +140,11 @@ void ComparisonPanels::add_pairs() {
   if (!comparison_.is_static_pressure) return;
   add("corrected", "static pressure of the model",
       [](const FlightResiduals& f) -> const std::vector<double>& { return f.corrected_pressures.back(); });
-  report_.columns.push_back(report_.columns.back());
-  ReportColumn& reference = report_.columns.back();
+  report().columns.push_back(report().columns.back());
+  ReportColumn& reference = report().columns.back();
   reference.name = "reference_corrected";
   reference.title = "static pressure of the reference";
-  const std::vector<double>& residual = report_.columns[comparison_.models.size() - 1].values;
+  const std::vector<double>& residual = report().columns[comparison_.models.size() - 1].values;
   for (std::size_t i = 0; i < reference.values.size(); ++i) reference.values[i] += residual[i];
   pair("Corrected static pressures", "The line is an orthogonal fit, its rms that of the distances from it. ",
        "corrected", "reference_corrected", comparison_.models.back().static_pressure);
@@ -189,7 +158,7 @@ void ComparisonPanels::add_tables() {
       masks.rows.push_back({std::to_string(comparison_.masks[i]),
                             i == 0 ? "used" : "not used: " + std::string(mask_info[i].meaning)});
   }
-  report_.items.emplace_back(std::move(masks));
+  report().items.emplace_back(std::move(masks));
   for (const ModelComparison& model : comparison_.models) {
     ReportTable worst{title_of("The worst minutes", comparison_, model),
                       "The minutes with the largest rms residual, and their regimes.",
@@ -199,7 +168,7 @@ void ComparisonPanels::add_tables() {
                             fmt::format("{:.3f}", interval.statistics.bias),
                             fmt::format("{:.3f}", interval.statistics.rms), interval.regimes});
     }
-    report_.items.emplace_back(std::move(worst));
+    report().items.emplace_back(std::move(worst));
     ReportTable bands{title_of("By band", comparison_, model),
                       "Bands with fewer than 30 samples are omitted.",
                       {"band", "samples", model.is_by_gps() ? "GPS bias, hPa" : "bias, hPa", "std. error",
@@ -210,7 +179,7 @@ void ComparisonPanels::add_tables() {
            fmt::format("{:.3f}", band.statistics.bias_error), fmt::format("{:.3f}", band.statistics.rms),
            fmt::format("{:.1f}", band.statistics.rms_over_noise())});
     }
-    report_.items.emplace_back(std::move(bands));
+    report().items.emplace_back(std::move(bands));
   }
 }
 
@@ -233,16 +202,16 @@ void ComparisonPanels::summarise() {
             ? fmt::format("; R2 {:.2f} = 1 - (rms / standard deviation of the reference's delta-p)²",
                           model.r_squared)
             : "";
-    report_.summary.push_back(
+    report().summary.push_back(
         sentence(fmt::format("{}: {}bias {:+.3f} hPa, rms {:.3f} hPa{}, over {} samples{}", model.name,
                              model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
                              over_noise(model), model.all.samples, r_squared)));
     if (const std::string text = flaps_out_text(model.flaps_out, "the comparison"); !text.empty())
-      report_.summary.push_back(sentence(text));
+      report().summary.push_back(sentence(text));
   }
   const ModelComparison& last = comparison_.models.back();
   if (std::string text = shown_text(comparison_.flights.size(), last.flights.size()); !text.empty())
-    report_.summary.push_back(std::move(text));
+    report().summary.push_back(std::move(text));
   const PartStatistics* worst = nullptr;
   for (const PartStatistics& part : last.regimes) {
     if (last.is_by_gps() || part.statistics.samples < min_in_regime ||
@@ -251,21 +220,16 @@ void ComparisonPanels::summarise() {
     if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;
   }
   if (worst != nullptr) {
-    report_.summary.push_back(
+    report().summary.push_back(
         fmt::format("{} has its largest errors in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} "
                     "times the noise there.",
                     comparison_.models.size() == 1 ? "It" : "The last", worst->name, worst->statistics.bias,
                     worst->statistics.rms, worst->statistics.rms_over_noise()));
   }
-  report_.info.emplace_back("Reference", comparison_.reference);
-  for (const FlightResiduals& flight : comparison_.flights) {
-    const FlightSamples& samples = *flight.samples;
-    report_.info.emplace_back("Flight",
-                              fmt::format("{}, {} to {} UTC", samples.name, utc_text(samples.time.front()),
-                                          utc_text(samples.time.back(), "%H:%M:%S")));
-  }
-  report_.info.emplace_back("Program", "pcor " PCOR_VERSION);
-  for (const Note& note : comparison_.notes) report_.info.emplace_back(label_of(note), note.text);
+  report().info.emplace_back("Reference", comparison_.reference);
+  samples_.add_flights_to_info();
+  report().info.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const Note& note : comparison_.notes) report().info.emplace_back(label_of(note), note.text);
 }
 
 }  // namespace pcor::internal

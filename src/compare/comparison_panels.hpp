@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "residuals/flight_report.hpp"
+
 namespace pcor::internal {
 
 /// Columns that all pictures of a comparison share, and the panels common to all its reports.
@@ -13,7 +15,7 @@ class ComparisonPanels {
  public:
   explicit ComparisonPanels(const Comparison& comparison);
 
-  Report& report() { return report_; }
+  Report& report() { return samples_.report(); }
 
   void add_panels();
   /// Comparison of the two systems: figures 1 and 2 of the memo.
@@ -26,7 +28,7 @@ class ComparisonPanels {
   void add(const std::string& name, const std::string& title, const Series& series);
 
   const Comparison& comparison_;
-  Report report_;
+  FlightReport samples_;
   std::vector<std::string> residuals_;
   std::vector<std::string> variables_;
   std::vector<std::string> defects_;  // names of delta-p of the reference and of every model

@@ -12,6 +12,7 @@
 #include "numerics/spikes.hpp"
 #include "numerics/whitening.hpp"
 #include "parallel/workers.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -74,10 +75,10 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
 
 double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
   std::vector<std::size_t> chosen;
-  Eigen::VectorXd estimate = start;
+  Eigen::VectorXd found = coefficients({}, start);
   for (int round = generous ? 0 : 1; round < max_rounds; ++round) {
-    replace_outliers(chosen, estimate);
-    find_noise(chosen, estimate, round == 0);
+    replace_outliers(found);
+    find_noise(chosen, found, round == 0);
     find_search(chosen);
     SearchOptions options;
     options.seed = seed_;
@@ -88,7 +89,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
     result_ = search_->run(options);
     const bool stable = round > 1 && result_.chosen == chosen;
     chosen = result_.chosen;
-    estimate = search_->fit(chosen).estimate;
+    found = coefficients(chosen);
     if (stable) break;
   }
   Eigen::Index columns = 0;
@@ -107,50 +108,31 @@ std::vector<Eigen::Index> Analysis::indices_of(const std::vector<std::size_t>& g
   return internal::indices_of(groups, groups_, base_);
 }
 
-Eigen::VectorXd Analysis::left_of(std::size_t flight, const std::vector<std::size_t>& groups,
-                                  const Eigen::VectorXd& estimate) const {
-  return binned_.residuals[flight] - binned_.columns[flight](Eigen::all, indices_of(groups)) * estimate;
+Eigen::VectorXd Analysis::coefficients(const std::vector<std::size_t>& groups,
+                                       const Eigen::VectorXd& estimate) const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(binned_.columns.front().cols());
+  all(indices_of(groups)) = estimate;
+  return all;
 }
 
-std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::size_t>& groups,
-                                    const Eigen::VectorXd& estimate) const {
-  const FlightColumns& columns = this->flight(flight);
-  std::vector<double> result(columns.given.size(), nan);
-  for (const std::size_t record : binned_.bins[flight].records()) {
-    const Eigen::Index row = as_index(record);
-    double sum = columns.base.row(row).cast<double>().dot(estimate.head(base_));
-    Eigen::Index position = base_;
-    for (const std::size_t group : groups) {
-      for (Eigen::Index k = 0; k < groups_[group].count; ++k)
-        sum += static_cast<double>(columns.candidates(row, groups_[group].first + k)) * estimate[position++];
-    }
-    result[record] = sum;
-  }
-  return result;
+std::vector<double> Analysis::added(std::size_t flight, const Eigen::VectorXd& coefficients) const {
+  return only_at(sum_of_columns(this->flight(flight), coefficients), binned_.bins[flight].records());
 }
 
-std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std::size_t>& groups,
-                                       std::size_t which, const Eigen::VectorXd& estimate) const {
-  const FlightColumns& columns = this->flight(flight);
-  Eigen::Index position = base_;
-  for (std::size_t i = 0; i < which; ++i) position += groups_[groups[i]].count;
-  const ColumnGroup& group = groups_[groups[which]];
-  std::vector<double> result(columns.given.size(), nan);
-  for (const std::size_t record : binned_.bins[flight].records()) {
-    result[record] = columns.candidates.row(as_index(record))
-                         .segment(group.first, group.count)
-                         .cast<double>()
-                         .dot(estimate.segment(position, group.count));
-  }
-  return result;
+std::vector<double> Analysis::added_by(std::size_t flight, std::size_t group,
+                                       const Eigen::VectorXd& coefficients) const {
+  const std::vector<Eigen::Index> own = internal::indices_of(groups_[group], base_);
+  Eigen::VectorXd alone = Eigen::VectorXd::Zero(coefficients.size());
+  alone(own) = coefficients(own);
+  return added(flight, alone);
 }
 
-void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
+void Analysis::replace_outliers(const Eigen::VectorXd& coefficients) {
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (!share_.is_local(f)) continue;
     FlightColumns& flight = f < flights_.size() ? flights_[f] : further_[f - flights_.size()];
     std::size_t count = 0;
-    const std::vector<double> predicted = added(f, groups, estimate);
+    const std::vector<double> predicted = added(f, coefficients);
     flight.residual =
         without_outliers(flight.given, predicted, flight.samples->time, flight.samples->step, count);
     // A record outside all bins has no prediction and is not counted.
@@ -159,37 +141,38 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
 }
 
 std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& groups,
-                                              const Eigen::VectorXd& estimate, const FindNoise& find) const {
+                                              const Eigen::VectorXd& coefficients,
+                                              const FindNoise& find) const {
   const std::vector<Eigen::Index> indices = indices_of(groups);
   return noise_of_flights(
       share_, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, indices); },
-       [&](std::size_t f) { return left_of(f, groups, estimate); }, digest_of(packed(estimate))},
+       [&](std::size_t f) { return left_of(f, coefficients); }, digest_of(packed(coefficients))},
       find);
 }
 
-void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
+void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients,
                           bool is_rough) {
   const std::size_t threads = Workers(share_.comm(), 0).threads;
   bool is_first = true;
   likelihood_ = 0.0;
-  noise_ = noise_after(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {
-    if (is_rough) return estimate_noise(bins, residuals);
-    const FoundNoise found = internal::find_noise(bins, columns, residuals, threads);
-    if (is_first) drift_gain_ = found.drift_gain;
-    is_first = false;
-    likelihood_ += found.likelihood;
-    return with_slower_noise(found.model);  // this likelihood includes only what the flights show
-  });
-  coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
-  coefficients_(indices_of(groups)) = estimate;
+  noise_ =
+      noise_after(groups, coefficients, [&](const auto& bins, const auto& columns, const auto& residuals) {
+        if (is_rough) return estimate_noise(bins, residuals);
+        const FoundNoise found = internal::find_noise(bins, columns, residuals, threads);
+        if (is_first) drift_gain_ = found.drift_gain;
+        is_first = false;
+        likelihood_ += found.likelihood;
+        return with_slower_noise(found.model);  // this likelihood includes only what the flights show
+      });
+  coefficients_ = coefficients;
 }
 
 NoiseModel Analysis::noise_beside_offsets() const {
   const std::size_t threads = Workers(share_.comm(), 0).threads;
   bool is_first = true;
   const auto noise = noise_after(
-      result_.chosen, search_->fit(result_.chosen).estimate,
+      result_.chosen, coefficients(result_.chosen),
       [&](const auto& bins, const auto& columns, const auto& residuals) {
         if (!std::exchange(is_first, false)) return estimate_noise(bins, residuals);
         std::vector<Eigen::MatrixXd> with_offsets = columns;
@@ -355,7 +338,7 @@ Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) 
     own.counts[0] = static_cast<double>(rows.rows());
     return own;
   });
-  return solution(sums.products[0], sums.counts[0], groups);
+  return coefficients(groups, solution(sums.products[0], sums.counts[0], groups));
 }
 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
@@ -393,7 +376,8 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     return estimates;
   };
   const std::vector<Eigen::VectorXd> estimates = estimates_from(0);
-  const std::vector<Eigen::VectorXd> least_squares = estimates_from(held_out_parts);
+  std::vector<Eigen::VectorXd> least_squares = estimates_from(held_out_parts);
+  for (Eigen::VectorXd& estimate : least_squares) estimate = coefficients(groups, estimate);
   HeldOut result;
   result.chi2 = scores_->by_minutes([&](std::size_t f) {
     Eigen::VectorXd squares(white[f].rows());
@@ -404,17 +388,16 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     }
     return squares;
   });
-  result.rms = rms_of_parts(groups, least_squares);
+  result.rms = rms_of_parts(least_squares);
   return result;
 }
 
-double Analysis::rms_of_parts(const std::vector<std::size_t>& groups,
-                              const std::vector<Eigen::VectorXd>& estimates) const {
+double Analysis::rms_of_parts(const std::vector<Eigen::VectorXd>& coefficients) const {
   const auto sum = first_share_.sum_of_each_flight<SquareSum>([&](std::size_t f) {
     SquareSum of_flight;
     const FlightColumns& flight = flights_[f];
     std::vector<std::vector<double>> predicted;
-    for (const Eigen::VectorXd& estimate : estimates) predicted.push_back(added(f, groups, estimate));
+    for (const Eigen::VectorXd& of_part : coefficients) predicted.push_back(added(f, of_part));
     for (const std::size_t record : binned_.bins[f].records()) {
       if (flight.residual[record] != flight.given[record]) continue;  // an outlier
       const std::size_t part = held_out_part(*flight.samples, flight.samples->time[record]);
@@ -425,12 +408,11 @@ double Analysis::rms_of_parts(const std::vector<std::size_t>& groups,
   return sum.rms();
 }
 
-std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups,
-                                    const Eigen::VectorXd& coefficients) const {
+std::vector<double> Analysis::drift(std::size_t flight, const Eigen::VectorXd& coefficients) const {
   std::vector<double> result(flights_[flight].given.size(), nan);
   const Binning& bins = binned_.bins[flight];
   const Whitening whitening(bins, noise_[flight], 0);
-  const Eigen::VectorXd series = whitening.slow_parts(left_of(flight, groups, coefficients));
+  const Eigen::VectorXd series = whitening.slow_parts(left_of(flight, coefficients));
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;
 }

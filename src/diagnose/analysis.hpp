@@ -88,39 +88,45 @@ class Analysis {
     return {binned_.residuals.begin(), binned_.residuals.begin() + as_index(flights_.size())};
   }
 
-  /// Contribution of base and groups to the residual of every record of a flight, hPa. @param estimate of
-  /// base and the groups' columns, as `Search::fit` gives it
-  std::vector<double> added(std::size_t flight, const std::vector<std::size_t>& groups,
-                            const Eigen::VectorXd& estimate) const;
-  /// Contribution of the group `groups[which]` alone.
-  std::vector<double> added_by(std::size_t flight, const std::vector<std::size_t>& groups, std::size_t which,
-                               const Eigen::VectorXd& estimate) const;
+  /// Coefficients of all columns, zero except those of base and groups.
+  /// @param estimate of base and groups, in the order of `Search::fit`
+  Eigen::VectorXd coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) const;
+  /// The same by maximum likelihood.
+  Eigen::VectorXd coefficients(const std::vector<std::size_t>& groups) const {
+    return coefficients(groups, search_->fit(groups).estimate);
+  }
 
-  /// Coefficients of base and groups by least squares against the first reference, as a refit has them.
+  /// Contribution of columns with these coefficients to the residual of every record in the bins of a flight,
+  /// hPa; NaN for other records.
+  std::vector<double> added(std::size_t flight, const Eigen::VectorXd& coefficients) const;
+  /// Contribution of the columns of a group alone.
+  std::vector<double> added_by(std::size_t flight, std::size_t group,
+                               const Eigen::VectorXd& coefficients) const;
+
+  /// `coefficients` by least squares against the first reference, as a refit has them.
   Eigen::VectorXd least_squares(const std::vector<std::size_t>& groups) const;
 
   /// Residual of base and groups on five-minute blocks that were excluded from their fit, one block in five
   /// at a time.
   HeldOut held_out(const std::vector<std::size_t>& groups) const;
 
-  /// Most likely drift of a flight after base and `groups`, one value per record, hPa.
+  /// Most likely drift of a flight after columns with these coefficients, one value per record, hPa.
   /// @param coefficients of least squares; coefficients of the noise model may move along collinear columns
   /// as the drift allows
-  std::vector<double> drift(std::size_t flight, const std::vector<std::size_t>& groups,
-                            const Eigen::VectorXd& coefficients) const;
+  std::vector<double> drift(std::size_t flight, const Eigen::VectorXd& coefficients) const;
 
  private:
   /// Iterates noise and effects until they are stable. Returns the likelihood of the result minus the cost of
   /// its effects. @param generous removes all candidate effects before the first noise estimate
   double search_from(const Eigen::VectorXd& start, bool generous);
-  void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
+  void replace_outliers(const Eigen::VectorXd& coefficients);
   /// @param is_rough a first estimate without slow drift
-  void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate, bool is_rough);
+  void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients, bool is_rough);
   /// Noise of each flight against each reference after base and groups. The shared part is estimated from a
   /// few flights by `find(bins, columns, residuals)`; the levels of a flight follow from it and the flight's
   /// residual.
-  std::vector<NoiseModel> noise_after(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
-                                      const FindNoise& find) const;
+  std::vector<NoiseModel> noise_after(const std::vector<std::size_t>& groups,
+                                      const Eigen::VectorXd& coefficients, const FindNoise& find) const;
   /// @param chosen effects found so far; the shapes of those of the flow are uncertain
   void find_search(const std::vector<std::size_t>& chosen);
   /// Columns of the uncertain shapes of the chosen effects of the flow: groups first, then the added effects.
@@ -132,19 +138,18 @@ class Analysis {
   /// Removes the common noise from the rows against further references.
   void take_out_common_noise(WhitenedSystem& scores) const;
 
-  /// Residual of a flight after base and groups, in bins.
-  Eigen::VectorXd left_of(std::size_t flight, const std::vector<std::size_t>& groups,
-                          const Eigen::VectorXd& estimate) const;
+  /// Residual of a flight after columns with these coefficients, in bins.
+  Eigen::VectorXd left_of(std::size_t flight, const Eigen::VectorXd& coefficients) const {
+    return binned_.residuals[flight] - binned_.columns[flight] * coefficients;
+  }
   /// Columns and residual of a flight as a refit has them: in bins, or the white rows of GPS.
   Eigen::MatrixXd rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& indices) const;
   /// Coefficients of base and groups from the products of their columns and the residual with each other.
   /// @param rows number of rows in the products
   Eigen::VectorXd solution(const Eigen::MatrixXd& products, double rows,
                            const std::vector<std::size_t>& groups) const;
-  /// Rms against the first reference, without outliers, hPa. @param estimates coefficients of base and groups
-  /// for the records of each part
-  double rms_of_parts(const std::vector<std::size_t>& groups,
-                      const std::vector<Eigen::VectorXd>& estimates) const;
+  /// Rms against the first reference, without outliers, hPa. @param coefficients for the records of each part
+  double rms_of_parts(const std::vector<Eigen::VectorXd>& coefficients) const;
   /// Positions of the columns of base and groups.
   std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& groups) const;
 

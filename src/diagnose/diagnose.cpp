@@ -31,44 +31,19 @@ using namespace internal;
 
 namespace {
 
-/// Residual of all used samples of a flight, including those outside all bins.
-/// @param change of the coefficients of base and groups
-std::vector<double> residual_after(const Analysis& analysis, std::size_t flight,
-                                   const std::vector<std::size_t>& groups, const Eigen::VectorXd& change) {
-  const FlightColumns& columns = analysis.flights()[flight];
-  std::vector<double> residual = columns.given;
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (std::isnan(residual[i])) continue;
-    const Eigen::Index row = as_index(i);
-    Eigen::Index position = columns.base.cols();
-    residual[i] -= columns.base.row(row).cast<double>().dot(change.head(position));
-    for (const std::size_t group : groups) {
-      const ColumnGroup& own = analysis.groups()[group];
-      residual[i] -= columns.candidates.row(row)
-                         .segment(own.first, own.count)
-                         .cast<double>()
-                         .dot(change.segment(position, own.count));
-      position += own.count;
-    }
-  }
-  return residual;
-}
-
-/// Changes of the coefficients of base and groups in pictures: by least squares; by GPS alone, where the
+/// Changes of all coefficients by base and groups in pictures: by least squares; by GPS alone, where the
 /// atmosphere is in the residual, those by maximum likelihood less those of the base alone.
 Eigen::VectorXd changes(const Analysis& analysis, const std::vector<std::size_t>& groups, bool is_refitted) {
   if (is_refitted) return analysis.least_squares(groups);
-  Eigen::VectorXd likely = analysis.search().fit(groups).estimate;
-  likely.head(analysis.base()) -= analysis.search().fit({}).estimate.head(analysis.base());
-  return likely;
+  return analysis.coefficients(groups) - analysis.coefficients({});
 }
 
-/// Local flights; entries of the others are empty. @param before, @param corrected changes of the
-/// coefficients of the base, and of base and findings
+/// Local flights; entries of the others are empty. @param before, @param corrected changes of all
+/// coefficients by the base, and by base and findings
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::VectorXd& before,
                                         const Eigen::VectorXd& corrected) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
-  const Eigen::VectorXd with = analysis.search().fit(chosen).estimate;
+  const Eigen::VectorXd with = analysis.coefficients(chosen);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
   for (std::size_t f = 0; f < flights.size(); ++f) {
@@ -76,13 +51,13 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
     const FlightColumns& columns = analysis.flights()[f];
     FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
-    flight.before = residual_after(analysis, f, {}, before);
-    flight.after = residual_after(analysis, f, chosen, corrected);
+    flight.before = residual_after(columns, before);
+    flight.after = residual_after(columns, corrected);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
-      flight.added.push_back(analysis.added_by(f, chosen, k, with));
+      flight.added.push_back(analysis.added_by(f, chosen[k], with));
       flight.evidence.push_back(evidence_along(analysis, f, evidence[k]));
     }
-    flight.drift = analysis.drift(f, chosen, corrected);
+    flight.drift = analysis.drift(f, corrected);
     flight.static_pressure = columns.corrected_pressure;
     flight.mach = columns.quantity(Quantity::corrected_mach);
     flight.attack = columns.quantity(Quantity::attack);
@@ -332,11 +307,11 @@ std::string id_on_other_system(const std::string& system, const std::string& nam
 
 std::string component_text(const EmpiricalPredictor& variable) {
   const bool is_total = variable.location == EffectLocation::pitot;
-  std::string text = "its location is unknown";
+  std::string text = "the location of the error is unknown";
   if (!variable.components.empty())
-    text = fmt::format("its location is one of: {}, since the total pressures of the two systems {}",
-                       fmt::join(variable.components, ", "),
-                       is_total ? "also vary with it" : "do not vary with it");
+    text = fmt::format(
+        "the location of the error is one of: {}, since the total pressures of the two systems {} with {}",
+        fmt::join(variable.components, ", "), is_total ? "also vary" : "do not vary", variable.name);
   if (!variable.formula.empty())
     text +=
         fmt::format("; the formula is written as added to the {} pressure", is_total ? "total" : "static");

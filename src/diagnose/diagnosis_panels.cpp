@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
@@ -15,7 +14,6 @@
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/report_flight.hpp"
 
 namespace pcor::internal::report {
 namespace {
@@ -107,16 +105,13 @@ std::string cell(double value, int decimals) {
 }
 
 DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
-  for (std::size_t number = 0; number < flights.size(); ++number) {
-    const FlightDiagnosis& flight = flights[number];
+  for (const FlightDiagnosis& flight : flights) {
     if (flight.samples == nullptr) continue;
-    Used used{number, flight.samples.get(), {}};
+    std::vector<std::size_t> records;
     for (std::size_t i = 0; i < flight.before.size(); ++i) {
-      if (std::isfinite(flight.before[i])) used.records.push_back(i);
+      if (std::isfinite(flight.before[i])) records.push_back(i);
     }
-    if (used.records.empty()) continue;
-    add_flight(report_, *used.samples, used.records);
-    used_.push_back(std::move(used));
+    samples_.add_flight(flight.samples, std::move(records));
   }
   add_variables(flights);
 }
@@ -135,7 +130,7 @@ void DiagnosisPanels::add_finding_columns(const Flights& flights, std::size_t fi
 
 void DiagnosisPanels::add_binned(std::string title, std::string caption, std::vector<std::string> y,
                                  const std::vector<std::string>& first) {
-  BinnedPanel panel{std::move(title), std::move(caption), present(report_, std::move(y)), {}};
+  BinnedPanel panel{std::move(title), std::move(caption), present(report(), std::move(y)), {}};
   panel.x_choices = choices(panel.columns, first);
   if (panel.x_choices.empty()) return;
   panel.axis = "residual";
@@ -149,7 +144,7 @@ std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>
   const auto offer = [&](const std::string& x) {
     const bool known = std::find(all.begin(), all.end(), x) != all.end();
     const bool shown = std::any_of(y.begin(), y.end(), [&](const std::string& name) {
-      return meet(report_.columns, {x, name});
+      return meet(samples_.report().columns, {x, name});
     });
     if (!known && shown) all.push_back(x);
   };
@@ -161,18 +156,11 @@ std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>
 void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& residual,
                                   const std::vector<std::string>& first, double noise,
                                   const std::string& noise_label) {
-  if (what_if.panel.effects.empty() || !meet(report_.columns, {residual})) return;
+  if (what_if.panel.effects.empty() || !meet(report().columns, {residual})) return;
   WhatIfPanel panel = what_if.panel;
   for (std::size_t c = 0; c < panel.coefficients.size(); ++c) {
-    Series& column = panel.coefficients[c].column;
-    for (const Used& used : used_) {
-      const auto flight =
-          std::find_if(what_if.flights.begin(), what_if.flights.end(), [&used](const WhatIfFlight& each) {
-            return each.samples->name == used.samples->name && each.samples->time == used.samples->time;
-          });
-      for (const std::size_t i : used.records)
-        column.push_back(flight == what_if.flights.end() ? nan : flight->columns[c][i]);
-    }
+    panel.coefficients[c].column = samples_.joined(
+        what_if.flights, [c](const WhatIfFlight& flight) -> const auto& { return flight.columns[c]; });
   }
   panel.title = "What if";
   panel.caption =
@@ -191,8 +179,8 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
                   [](const WhatIfCoefficient& each) { return is_of_reference(each.name); }))
     panel.caption += "The coefficients of the reference system keep their given values here. ";
   panel.caption +=
-      "The numbers use all samples; pictures and tables use derivatives at a few thousand samples, with "
-      "linear interpolation.";
+      "The numbers use all samples; pictures and tables of a flight of more than 16,000 samples interpolate "
+      "derivatives between regular samples.";
   panel.residual = residual;
   panel.x_choices = choices({residual}, first);
   panel.autocorrelation_time = memory_;
@@ -202,7 +190,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
 }
 
 void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {
-  if (meet(report_.columns, {mach, pressure, colour}))
+  if (meet(report().columns, {mach, pressure, colour}))
     add(PlanePanel{std::move(title), std::move(caption), mach, pressure, colour});
 }
 
@@ -230,15 +218,10 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
   add_variable(pressure, "static pressure", "hPa", flights, &F::static_pressure);
   add_variable("attack", "angle of attack", "deg", flights, &F::attack);
   add_variable("sideslip", "sideslip", "deg", flights, &F::sideslip);
-  const auto motion = [&](const char* name, const char* title, const char* unit, Series FlightMotion::*of) {
-    add_variable(name, title, unit, flights, [of](const F& f) { return f.samples->motion.*of; });
-  };
-  motion("vertical_speed", "vertical speed", "m/s", &FlightMotion::vertical_speed);
-  motion("true_airspeed", "true airspeed", "m/s", &FlightMotion::airspeed);
-  motion("roll", "roll", "deg", &FlightMotion::roll);
-  motion("altitude", "altitude", "m", &FlightMotion::altitude);
-  add_column("latitude", "latitude", "deg", flights, [](const F& f) { return f.samples->latitude; });
-  add_column("longitude", "longitude", "deg", flights, [](const F& f) { return f.samples->longitude; });
+  for (const char* const name : {"vertical_speed", "true_airspeed", "roll", "altitude"}) {
+    if (samples_.add_motion(name)) variables_.emplace_back(name);
+  }
+  samples_.add_position();
   add_variable("time", "time since the first record", "h", flights, [](const F& f) {
     Series hours;
     for (const double time : f.samples->time) hours.push_back((time - f.samples->time.front()) / 3600.0);
@@ -258,7 +241,7 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
 
 void DiagnosisPanels::add_info(const Diagnosis& diagnosis, const ModelDefinition& model,
                                const Info& numbers) {
-  Info& info = report_.info;
+  Info& info = report().info;
   info.emplace_back("Model", model.model.name);
   info.emplace_back("Reference", diagnosis.reference);
   info.insert(info.end(), numbers.begin(), numbers.end());
@@ -269,13 +252,9 @@ void DiagnosisPanels::add_info(const Diagnosis& diagnosis, const ModelDefinition
       excluded.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_info[i].meaning));
   }
   std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
-  if (!text.empty()) report_.summary.push_back(std::move(text));
+  if (!text.empty()) report().summary.push_back(std::move(text));
   if (!excluded.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(excluded, "; ")));
-  for (const Used& used : used_) {
-    info.emplace_back(
-        "Flight", fmt::format("{}, {} to {} UTC", used.samples->name, utc_text(used.samples->time.front()),
-                              utc_text(used.samples->time.back(), "%H:%M:%S")));
-  }
+  samples_.add_flights_to_info();
   info.emplace_back("Program", "pcor " PCOR_VERSION);
   for (const Note& note : diagnosis.notes) info.emplace_back(label_of(note), note.text);
 }
@@ -302,7 +281,7 @@ void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::str
   add_table(variables_table(unexplained));
   if (unexplained.variables.empty()) return;
   const std::string& variable = unexplained.variables.front().name;
-  if (meet(report_.columns, {variable_column(variable), left}))
+  if (meet(report().columns, {variable_column(variable), left}))
     add_binned("Remaining residual against " + variable, structure_caption, {left},
                {variable_column(variable)});
 }
@@ -316,38 +295,31 @@ void DiagnosisPanels::add_traced(const Diagnosis& diagnosis) {
 
 void DiagnosisPanels::add_residual_in_time(const Diagnosis& diagnosis,
                                            const std::vector<std::string>& residuals) {
-  add_if_present(
-      report_,
-      TimePanel{"Residual in time",
-                fmt::format("Static pressure of the reference minus that of the model, with {}; regimes are "
-                            "shaded.",
-                            refitted_text(diagnosis)),
-                residuals, "residual"});
+  add_if_present(report(),
+                 TimePanel{"Residual in time",
+                           fmt::format("Residual: reference minus model, with {}; regimes are shaded.",
+                                       refitted_text(diagnosis)),
+                           residuals, "residual"});
 }
 
 void DiagnosisPanels::add_residual_by_regime(const Diagnosis& diagnosis,
                                              const std::vector<std::string>& residuals) {
-  if (report_.time.empty()) return;
-  add_strip(report_);
+  if (report().time.empty()) return;
+  add_strip(report());
   add(RegimeTable{
       "By regime",
       fmt::format("Bias and rms of the residual in each regime, with {}.", refitted_text(diagnosis)),
       residuals});
-  add_regimes(report_, residuals);
+  add_regimes(report(), residuals);
 }
 
 void DiagnosisPanels::add_last_panels(const Diagnosis& diagnosis, const std::vector<std::string>& residuals) {
   const std::string left = residuals.empty() ? "" : residuals.back();
-  add_distributions(report_, residuals);
-  std::vector<ReportBarb> wind;
-  for (const Used& used : used_) {
-    const std::vector<ReportBarb> part = wind_of(*used.samples);
-    wind.insert(wind.end(), part.begin(), part.end());
-  }
-  add_track(report_, "Remaining residual on the map",
+  add_distributions(report(), residuals);
+  add_track(report(), "Remaining residual on the map",
             "The track over the ground: one colour over a leg or a heading indicates an error that depends "
             "on place or direction.",
-            left, std::move(wind));
+            left);
   add_unexplained(diagnosis, left);
   ReportTable limits{
       "Upper limits of effects that were not found",

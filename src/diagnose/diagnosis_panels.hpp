@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,8 +8,8 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/diagnose/what_if.hpp>
 #include <pcor/report/report.hpp>
-#include "numerics/missing.hpp"
 #include "report/columns.hpp"
+#include "residuals/flight_report.hpp"
 
 /// Columns, panels and tables shared by the reports of diagnose and improve.
 namespace pcor::internal::report {
@@ -44,29 +43,18 @@ class DiagnosisPanels {
  public:
   explicit DiagnosisPanels(const Flights& flights);
 
-  Report& report() { return report_; }
+  Report& report() { return samples_.report(); }
 
   template <class Panel>
   void add(Panel panel) {
-    report_.items.emplace_back(std::move(panel));
+    report().items.emplace_back(std::move(panel));
   }
 
-  /// Adds the column if it has any value, and returns whether it did. @param flights with their samples
-  /// @param series member of a flight, or a function of it
+  /// Adds the column as `FlightReport::add_column` does.
   template <class Flight, class Of>
   bool add_column(const std::string& name, const std::string& title, const std::string& unit,
                   const std::vector<Flight>& flights, const Of& series) {
-    Series values;
-    values.reserve(report_.time.size());
-    for (const Used& used : used_) {
-      const bool same = used.number < flights.size() && flights[used.number].samples != nullptr &&
-                        flights[used.number].samples->time.size() == used.samples->time.size();
-      const Series part = same ? std::invoke(series, flights[used.number]) : Series{};
-      for (const std::size_t i : used.records) values.push_back(i < part.size() ? part[i] : nan);
-    }
-    if (!has_value(values)) return false;
-    report_.columns.push_back({name, title, unit == "1" ? "" : unit, std::move(values)});
-    return true;
+    return samples_.add_column(name, title, unit, flights, series);
   }
 
   /// Adds the columns of one finding, its evidence and its contribution, with the names of
@@ -109,18 +97,11 @@ class DiagnosisPanels {
   void add_last_panels(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
 
  private:
-  /// Flight and its samples shown in the report.
-  struct Used {
-    std::size_t number;
-    const FlightSamples* samples;
-    std::vector<std::size_t> records;
-  };
-
   /// Adds the column as `add_column` does, for a variable on the axis of residual plots.
   template <class Of>
   void add_variable(const std::string& name, const std::string& title, const std::string& unit,
                     const Flights& flights, const Of& series) {
-    if (column_named(report_.columns, name) == nullptr && add_column(name, title, unit, flights, series))
+    if (column_named(report().columns, name) == nullptr && add_column(name, title, unit, flights, series))
       variables_.push_back(name);
   }
   void add_variables(const Flights& flights);
@@ -131,8 +112,7 @@ class DiagnosisPanels {
   /// @param left column of the remaining residual
   void add_unexplained(const Diagnosis& diagnosis, const std::string& left);
 
-  Report report_;
-  std::vector<Used> used_;
+  FlightReport samples_;
   std::vector<std::string> variables_;
   double memory_ = 1.0;
 };

@@ -17,16 +17,15 @@ constexpr std::size_t max_in_a_sentence = 3;
 
 /// Text of the page about an effect that needs no flight.
 struct Law {
-  std::string_view formula, unit, added_to, size, confounders, manoeuvre, source;
+  EffectLocation location;
+  std::string_view formula, unit, size, confounders, manoeuvre, source;
 };
 
 Law law_of(const ModelEffect& effect) {
   const EffectInfo* const info = effect.is_formula() ? nullptr : effect_named(effect.id);
-  if (info == nullptr)
-    return {effect.formula, effect.unit, info_of(effect.location).adds_to, "", "", "", effect.source};
-  const EffectLocationInfo& location = info_of(info->location);
-  return {info->formula,     location.unit,   location.adds_to, info->size,
-          info->confounders, info->manoeuvre, info->source};
+  if (info == nullptr) return {effect.location, effect.formula, effect.unit, "", "", "", effect.source};
+  return {info->location,  info->formula, info_of(info->location).unit, info->size, info->confounders,
+          info->manoeuvre, info->source};
 }
 
 std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
@@ -34,10 +33,11 @@ std::string times_usual(double ratio) { return ratio_text(ratio) + " times the u
 std::string what_it_is(const Finding& finding, const Law& law) {
   std::string text = "Missing effect: " + name_with_id(finding.title, finding.id()) + ".";
   if (law.formula.empty()) return text;
-  const bool defect = law.added_to.rfind("delta-p", 0) == 0;
-  return text + fmt::format(" The correction {}{} is added to {}{}.", law.formula,
+  return text + fmt::format(" The correction {}{} is added to {}.", law.formula,
                             law.unit.empty() || law.unit == "1" ? "" : fmt::format(" ({})", law.unit),
-                            defect ? "" : "the ", defect ? "delta-p" : law.added_to);
+                            law.location == EffectLocation::static_defect
+                                ? "delta-p"
+                                : fmt::format("the {}", info_of(law.location).adds_to));
 }
 
 std::string how_large(const Finding& finding, const Law& law) {
@@ -195,14 +195,8 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     }
     with += ".";
     if (!first.sampling.empty()) with += fmt::format(" Values used: {}.", first.sampling);
-    with += " The location of the error is unknown, since one residual cannot separate locations.";
-    if (!first.formula.empty()) {
-      with += fmt::format(
-          " The formula {} would describe it, added to the static pressure or at another location equally "
-          "well.",
-          first.formula);
-    }
-    all.push_back(with);
+    if (!first.formula.empty()) with += fmt::format(" The formula {} would describe it.", first.formula);
+    all.push_back(with + " " + sentence(component_text(first)));
   }
   for (const FlightOffset& step : unexplained.steps) {
     all.push_back(

@@ -142,13 +142,6 @@ struct Rival {
   double less_uncertain;  ///< the same with the uncertain shapes of both
 };
 
-/// Coefficients of all columns in a fit of base and groups.
-Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups) {
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(analysis.scores().columns());
-  all(indices_of(groups, analysis.groups(), analysis.base())) = analysis.search().fit(groups).estimate;
-  return all;
-}
-
 /// Part of an effect's chi2 in references where a rival differs from it: the effect's contribution against
 /// each reference before absorption by the base, weighted by the share of the difference of the two fits. At
 /// most the effect's chi2.
@@ -160,12 +153,12 @@ Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std:
 double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::size_t>& others,
                               std::size_t effect, std::size_t rival) {
   const double whole = analysis.search().score(effect, others).chi2;
-  const Eigen::VectorXd fitted = coefficients_of(analysis, set_with(others, effect));
-  const Eigen::VectorXd difference = fitted - coefficients_of(analysis, set_with(others, rival));
+  const Eigen::VectorXd fitted = analysis.coefficients(set_with(others, effect));
+  const Eigen::VectorXd difference = fitted - analysis.coefficients(set_with(others, rival));
   const std::vector<Eigen::Index> own = indices_of(analysis.groups()[effect], analysis.base());
   using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
   const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
-    const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());
+    const auto columns = analysis.scores().rows[f].leftCols(difference.size());
     return Squares{(columns(Eigen::all, own) * fitted(own)).squaredNorm(),
                    (columns * difference).squaredNorm()};
   });
@@ -256,14 +249,13 @@ struct Added {
 
 /// Rms that the model does not absorb, and extreme, over all used records: against the first reference or,
 /// for an effect on another system, against the references that see it.
-/// @param own part of `estimate` that belongs to the effect
-void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
-             const Eigen::VectorXd& estimate, const Eigen::VectorXd& own, const Candidate& candidate,
-             Finding& finding) {
+/// @param coefficients of all columns @param own those of the effect
+void measure(const Analysis& analysis, std::size_t group, const Eigen::VectorXd& coefficients,
+             const Eigen::VectorXd& own, const Candidate& candidate, Finding& finding) {
   const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
     Added of_flight;
     if (!candidate.is_measured_by(analysis.flight(f).reference)) return of_flight;
-    const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
+    const std::vector<double> added = analysis.added_by(f, group, coefficients);
     for (const std::size_t record : analysis.bins(f).records()) {
       of_flight.sum.add(added[record]);
       if (std::abs(added[record]) <= std::abs(of_flight.worst)) continue;
@@ -280,7 +272,7 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
     finding.worst_flight = analysis.flight(f).samples->name;
     finding.worst_time = of_flights[f].worst_time;
   }
-  finding.rms = std::sqrt(analysis.search().remaining(chosen[which], own)) * sum.rms();
+  finding.rms = std::sqrt(analysis.search().remaining(group, own)) * sum.rms();
 }
 
 /// Description of the tried shape; empty for the shape of the catalogue.
@@ -364,6 +356,7 @@ double rms_of_column(const Analysis& analysis, const Candidate& candidate, Eigen
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const auto [estimate, covariance] = analysis.search().fit(chosen);
+  const Eigen::VectorXd coefficients = analysis.coefficients(chosen, estimate);
   const HeldOut with_all = chosen.empty() ? HeldOut{} : analysis.held_out(chosen);
   const std::vector<Eigen::VectorXd> evidence_of_each = evidence_of_findings(analysis);
   std::vector<Finding> findings;
@@ -372,17 +365,18 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     const std::size_t group = chosen[i];
     const Candidate& candidate = candidates[group];
     const Eigen::Index count = as_index(candidate.tested.size());
+    const Eigen::VectorXd own = estimate.segment(position, count);
     Finding finding;
-    finding.effect = with_estimate(candidate, estimate.segment(position, count));
+    finding.effect = with_estimate(candidate, own);
     finding.of_reference = candidate.is_of_reference();
     finding.is_alike = candidate.is_shared;
     finding.system = candidate.system;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
-    finding.estimates = estimates_of(candidate, identifiable, estimate.segment(position, count),
-                                     covariance.block(position, position, count, count));
+    finding.estimates =
+        estimates_of(candidate, identifiable, own, covariance.block(position, position, count, count));
     finding.held = held_of(candidate, identifiable);
-    measure(analysis, chosen, i, estimate, estimate.segment(position, count), candidate, finding);
+    measure(analysis, group, coefficients, own, candidate, finding);
     position += count;
     const std::vector<std::size_t> without = set_without(chosen, group);
     // In units of the noise with the effect: the score of the search has the noise without it.

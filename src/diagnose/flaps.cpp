@@ -1,7 +1,11 @@
 #include "diagnose/flaps.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <pcor/effects/catalogue.hpp>
@@ -17,12 +21,15 @@ namespace {
 constexpr std::string_view flaps_effect = "flaps-gear";
 constexpr std::size_t min_with_flaps_out = 60;  // samples
 
+/// Whether the confounders of an effect, a list of ids, include an effect.
+bool has_confounder(const EffectInfo& effect, std::string_view id) {
+  return fmt::format(", {},", effect.confounders).find(fmt::format(", {},", id)) != std::string::npos;
+}
+
 bool looks_like_flaps(const ModelEffect& effect) {
   if (effect.is_formula()) return false;
-  const auto& info = *effect_named(effect.id);
-  const auto& flaps = *effect_named(flaps_effect);
-  return info.confounders.find(flaps_effect) != std::string_view::npos ||
-         flaps.confounders.find(effect.id) != std::string_view::npos;
+  return has_confounder(*effect_named(effect.id), flaps_effect) ||
+         has_confounder(*effect_named(flaps_effect), effect.id);
 }
 
 /// Residual of all samples, including those with flaps out.
@@ -105,7 +112,7 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
   const std::vector<std::size_t>& chosen = test.result().chosen;
   const std::vector<Finding> findings = findings_of(test, flaps.candidates);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(test);
-  const Eigen::VectorXd estimate = test.search().fit(chosen).estimate;
+  const Eigen::VectorXd coefficients = test.coefficients(chosen);
   std::vector<std::string> tested;
   for (std::size_t i = 0; i < flaps.candidates.size(); ++i) {
     if (flaps.reads_flaps[i] && !flaps.candidates[i].is_variant)
@@ -121,7 +128,7 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f) {
       if (!test.share().is_local(f)) continue;
       FlightDiagnosis& flight = diagnosis.flights[f];
-      flight.added.push_back(test.added_by(f, chosen, i, estimate));
+      flight.added.push_back(test.added_by(f, chosen[i], coefficients));
       flight.evidence.push_back(evidence_along(test, f, evidence[i]));
     }
   }

@@ -53,6 +53,23 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
   return found;
 }
 
+std::vector<double> sum_of_columns(const FlightColumns& flight, const Eigen::VectorXd& coefficients) {
+  const Eigen::Index base = flight.base.cols();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(as_index(flight.given.size()));
+  for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
+    if (coefficients[k] == 0.0) continue;
+    sum += coefficients[k] * (k < base ? flight.base.col(k) : flight.candidates.col(k - base)).cast<double>();
+  }
+  return {sum.begin(), sum.end()};
+}
+
+std::vector<double> residual_after(const FlightColumns& flight, const Eigen::VectorXd& coefficients) {
+  std::vector<double> residual = flight.given;
+  const std::vector<double> sum = sum_of_columns(flight, coefficients);
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= sum[i];
+  return residual;
+}
+
 References in_order_of_diagnosis(References references) {
   // The samples are read once for the first reference; the laser reads the most.
   const auto position = [](const Reference& reference) {

@@ -31,6 +31,14 @@ struct Testability {
 Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
                            Eigen::Index count);
 
+/// Sum of the columns of base and candidates times their coefficients, for each record of a local flight,
+/// hPa. NaN where a column with a coefficient other than zero has no value.
+/// @param coefficients of all columns, the base first
+std::vector<double> sum_of_columns(const FlightColumns& flight, const Eigen::VectorXd& coefficients);
+
+/// `FlightColumns::given` minus `sum_of_columns`, hPa; NaN if not used.
+std::vector<double> residual_after(const FlightColumns& flight, const Eigen::VectorXd& coefficients);
+
 /// References in the order of a diagnosis: the laser, others of single samples, height, wind.
 References in_order_of_diagnosis(References references);
 

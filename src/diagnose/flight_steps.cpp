@@ -44,14 +44,14 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
     right[f] = unit[f] * sum(model, model + 1);
   }
   const Eigen::VectorXd scale = of_model.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricEigen own = symmetric_eigen(scale.asDiagonal() * of_model * scale.asDiagonal());
+  const SymmetricEigen own(scale.asDiagonal() * of_model * scale.asDiagonal());
   Eigen::VectorXd root = Eigen::VectorXd::Zero(model);  // square root of the inverse
   for (Eigen::Index k = 0; k < model; ++k) {
     if (own.eigenvalues()[k] > min_eigenvalue) root[k] = 1.0 / std::sqrt(own.eigenvalues()[k]);
   }
   const Eigen::MatrixXd half = root.asDiagonal() * own.eigenvectors().transpose() * scale.asDiagonal();
   const Eigen::VectorXd by_model = half * right_of_model;
-  const SymmetricEigen shared = symmetric_eigen((half * together) * (half * together).transpose());
+  const SymmetricEigen shared((half * together) * (half * together).transpose());
   const Eigen::MatrixXd rows_of_model = shared.eigenvectors().transpose() * (half * together);
   // Difference between the inverse and the identity, for constants outside and inside the model.
   const Eigen::VectorXd beyond = shared.eigenvalues().unaryExpr(

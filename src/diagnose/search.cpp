@@ -162,7 +162,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     const Eigen::Index kept = as_index(identifiable.size());
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {
-      const SymmetricEigen solver = symmetric_eigen(own(identifiable, identifiable));
+      const SymmetricEigen solver(own(identifiable, identifiable));
       turned(identifiable, Eigen::all) =
           solver.eigenvectors() *
           solver.eigenvalues().cwiseMax(rank_limit).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -270,7 +270,7 @@ Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::v
   for (const std::size_t group : groups) {
     const Eigen::Index begin = begin_[group];
     const Eigen::Index count = turned_[group].cols();
-    const SymmetricEigen solver = symmetric_eigen(conditional.information.block(begin, begin, count, count));
+    const SymmetricEigen solver(conditional.information.block(begin, begin, count, count));
     Eigen::Index kept = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
       if (!(solver.eigenvalues()[k] > redundant_below)) continue;
@@ -289,13 +289,12 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
   std::vector<Eigen::Index> freedom;
   const Eigen::MatrixXd turn = normal_turn(conditional, groups, freedom);
   if (turn.cols() == 0) return std::numeric_limits<double>::infinity();
-  const SymmetricEigen solver = symmetric_eigen(turn.transpose() * conditional.information * turn);
-  const Eigen::MatrixXd root =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::mt19937_64 engine(options.seed);
   boost::random::normal_distribution<double> normal;  // the same on every machine
   const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
       turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
+  // A root that is continuous in the information: the threshold does not depend on rounding errors.
+  const Eigen::MatrixXd root = covariance_root(turn.transpose() * conditional.information * turn);
   std::vector<double> maxima = maxima_of(root * independent, freedom);
   const auto position =
       static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));

@@ -163,8 +163,4 @@ std::string general_advice(const std::string& id, const ModelEffect& effect) {
   return fmt::format("manoeuvres that separate {} in general: {}", id, info->manoeuvre);
 }
 
-bool is_separated(const SeparationProblem& rivalry) {
-  return power_of(min_distinct(rivalry, rivalry.information)) >= enough_power;
-}
-
 }  // namespace pcor::internal

@@ -70,7 +70,4 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
 /// General advice on separating a catalogue effect from similar ones, independent of the flights.
 std::string general_advice(const std::string& id, const ModelEffect& effect);
 
-/// Whether the existing flights separate the effect from its rivals with a probability of 95 %.
-bool is_separated(const SeparationProblem& rivalry);
-
 }  // namespace pcor::internal

@@ -1,5 +1,7 @@
 #include "diagnose/structure.hpp"
 
+#include <boost/random/uniform_real_distribution.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +34,7 @@ DrawnResiduals drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint
   constexpr double length = 60.0;  // s
   DrawnResiduals result{Eigen::MatrixXd(left.size(), draws), left};
   std::mt19937_64 shifts(shift_seed);
-  std::uniform_real_distribution<double> part(0.1, 0.9);
+  boost::random::uniform_real_distribution<double> part(0.1, 0.9);  // the same on every machine
   for (Eigen::Index k = 0; k < draws; ++k) {
     const auto first = static_cast<Eigen::Index>(part(shifts) * static_cast<double>(left.size()));
     std::rotate_copy(left.begin(), left.begin() + first, left.end(), result.shifted.col(k).begin());
@@ -214,7 +216,7 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
     taken.line = score[0] * score[0] / own(0, 0);
   }
   const Eigen::VectorXd scale = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * own * scale.asDiagonal());
+  const SymmetricEigen solver(scale.asDiagonal() * own * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     if (!(solver.eigenvalues()[k] > min_direction_left)) continue;

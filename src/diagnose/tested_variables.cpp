@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <pcor/physics/constants.hpp>
+#include <pcor/units/units.hpp>
 #include "base/phrasing.hpp"
 #include "numerics/missing.hpp"
 #include "parallel/flight_partition.hpp"
@@ -36,8 +37,10 @@ bool is_truth(const VariableInfo& variable) { return variable.attribute("Categor
 
 double turn_of(const VariableInfo& info) {
   if (info.modulus_range) return (*info.modulus_range)[1] - (*info.modulus_range)[0];
-  return info.units.compare(0, 3, "deg") == 0 && info.units != "deg_C" && info.units != "degC" ? full_turn
-                                                                                               : 0.0;
+  // Numbers without dimension are also convertible, with another scale.
+  const bool is_degree = is_convertible(info.units, "degree") &&
+                         UnitConversion::between(info.units, "degree", {}).scale() == 1.0;
+  return is_degree ? full_turn : 0.0;
 }
 
 /// Number of records between values if a variable has a lower rate; otherwise 1.

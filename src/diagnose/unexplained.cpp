@@ -21,6 +21,7 @@
 #include "numerics/chi_squared.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "residuals/flight_statistics.hpp"
 #include "roles/role_evidence.hpp"
 
 namespace pcor::internal {
@@ -108,14 +109,10 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
 /// Residuals of the flights of this process after the groups.
 std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
                                                  const std::vector<std::size_t>& groups) {
-  const Eigen::VectorXd estimate = analysis.search().fit(groups).estimate;
+  const Eigen::VectorXd coefficients = analysis.coefficients(groups);
   std::vector<std::vector<double>> after;
-  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
-    std::vector<double> left = analysis.flights()[f].given;
-    const std::vector<double> added = analysis.added(f, groups, estimate);
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= added[i];
-    after.push_back(std::move(left));
-  }
+  for (std::size_t f = 0; f < analysis.flights().size(); ++f)
+    after.push_back(only_at(residual_after(analysis.flights()[f], coefficients), analysis.bins(f).records()));
   return after;
 }
 

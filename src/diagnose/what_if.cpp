@@ -337,7 +337,6 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
     result.flights.push_back({flight.samples, by_records(flight)});
   for (const FlightColumns& flight : shown(fit.others(), is_shown)) add_held_out(result.flights, flight);
   files.require_unchanged();
-  panel.separations = fit.separations(set.candidates);
   return result;
 }
 

@@ -1,7 +1,5 @@
 #include "diagnose/what_if_fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -184,7 +182,12 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Team
   }));
   panel.outliers = std::move(panel.alike.back());
   panel.alike.pop_back();
-  describe(panel.coefficients);
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    for (const Eigen::Index c : indices_of(groups_[g], base_)) {
+      const std::vector<Eigen::Index>& free = identifiable_[g];
+      panel.coefficients[static_cast<std::size_t>(c)].fixed = std::count(free.begin(), free.end(), c) == 0;
+    }
+  }
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
@@ -299,76 +302,7 @@ WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const Candidate
                system.rows[f].row(as_index(i)).transpose());
     return sums;
   });
-  regimes_ = flown_regimes(with_noise, [&](std::size_t f) {
-    return FlightInBins{flights[f], binned_.bins[f]};
-  });
-  least_squares_ = system.information;
-  information_ = with_noise.information;
-  row_count_ = static_cast<double>(with_noise.row_count);
   return {found, as_sums(parts), lower_triangle(score_covariance)};
-}
-
-double WhatIfFit::variance(const std::vector<std::size_t>& groups) const {
-  const Indices free = free_columns(groups);
-  Eigen::VectorXd change(given_.size() + 1);
-  change << -solved(information_, free, given_), 1.0;
-  return change.dot(information_ * change) / std::max(row_count_ - static_cast<double>(free.size()), 1.0);
-}
-
-WhatIfFit::Fitted WhatIfFit::fitted(const std::vector<std::size_t>& groups) const {
-  const Indices free = free_columns(groups);
-  Fitted result{solved(least_squares_, free, given_), Eigen::VectorXd::Zero(given_.size())};
-  result.errors(free) = std::sqrt(variance(groups)) *
-                        information_inverse(information_(free, free)).diagonal().cwiseMax(0.0).cwiseSqrt();
-  return result;
-}
-
-void WhatIfFit::describe(std::vector<WhatIfCoefficient>& coefficients) const {
-  constexpr double surely = 2.0;  // errors
-  const Fitted none = fitted({});
-  const auto grow = [&coefficients](Eigen::Index c, double size) {
-    double& known = coefficients[static_cast<std::size_t>(c)].size;
-    known = std::max(known, size);
-  };
-  for (const Eigen::Index c : own_) grow(c, surely * none.errors[c]);
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const Fitted with = fitted({g});
-    for (const Eigen::Index c : own_) grow(c, std::abs(with.values[c] - none.values[c]));
-    for (Eigen::Index k = 0; k < groups_[g].count; ++k)
-      coefficients[static_cast<std::size_t>(base_ + groups_[g].first + k)].fixed = true;
-    for (const Eigen::Index c : identifiable_[g]) {
-      coefficients[static_cast<std::size_t>(c)].fixed = false;
-      grow(c, std::abs(with.values[c]) + surely * with.errors[c]);
-    }
-  }
-}
-
-std::vector<WhatIfSeparation> WhatIfFit::separations(const std::vector<Candidate>& candidates) const {
-  const Eigen::MatrixXd information = information_.topLeftCorner(given_.size(), given_.size());
-  std::vector<WhatIfSeparation> separations;
-  for (std::size_t effect = 0; effect < candidates.size(); ++effect) {
-    if (candidates[effect].is_shared) continue;  // its columns repeat those of another
-    const Eigen::VectorXd alone = fitted({effect}).values;
-    const Indices own = indices_of(groups_[effect], base_);
-    SeparationProblem rivalry{information, variance({effect}), own, alone(own), {}};
-    for (std::size_t rival = 0; rival < candidates.size(); ++rival) {
-      if (rival == effect || candidates[rival].is_shared) continue;
-      Indices rest = own_;
-      const Indices others = indices_of(groups_[rival], base_);
-      rest.insert(rest.end(), others.begin(), others.end());
-      rivalry.rests = {std::move(rest)};
-      const std::string& id = candidates[effect].id;
-      const std::string& other = candidates[rival].id;
-      separations.push_back(
-          {effect, rival,
-           is_separated(rivalry)
-               ? fmt::format(
-                     "these flights separate {} from {} at the size found, with a probability above 95 %", id,
-                     other)
-               : text_of(best_plan(regimes_, rivalry), id, candidates[effect].effect, {other})});
-    }
-  }
-  return separations;
 }
 
 }  // namespace pcor::internal

@@ -8,7 +8,6 @@
 #include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/search.hpp"
-#include "diagnose/separation.hpp"
 
 namespace pcor::internal {
 
@@ -21,9 +20,8 @@ using ResidualAt = std::function<std::vector<double>(const Eigen::VectorXd& valu
 /// all members have the sums.
 class WhatIfFit {
  public:
-  /// Completes a panel: its sums, with the weights of a refit with some of the effects that were found; its
-  /// unweighted sums; and the sizes of its coefficients, of which those that the flights do not determine
-  /// become fixed.
+  /// Completes a panel: its sums, with the weights of a refit with some of the effects that were found, and
+  /// its unweighted sums. Coefficients of effects that the flights do not determine become fixed.
   /// @param set candidates of the panel, in its order
   /// @param others samples that are not fitted
   /// @param found candidates with which, and with subsets of which, the noise is estimated
@@ -35,16 +33,7 @@ class WhatIfFit {
   const TeamColumns& flights() const { return flights_; }
   const TeamColumns& others() const { return others_; }
 
-  /// Regime that would separate each pair of effects, each at its size alone.
-  std::vector<WhatIfSeparation> separations(const std::vector<Candidate>& candidates) const;
-
  private:
-  /// Changes of all coefficients from the start, and their standard errors.
-  struct Fitted {
-    Eigen::VectorXd values;
-    Eigen::VectorXd errors;
-  };
-
   std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
   WhatIfWeights find_sums(const ModelDefinition& model, const CandidateSet& set,
                           const std::vector<std::size_t>& found, bool is_robust);
@@ -53,13 +42,6 @@ class WhatIfFit {
   std::vector<Eigen::VectorXd> weights_at(const Eigen::VectorXd& values) const;
   WhitenedSystem least_squares(const std::vector<Eigen::Index>& free, bool is_robust, Eigen::VectorXd& values,
                                std::vector<Eigen::VectorXd>& weights) const;
-  /// Fits the model's own coefficients with those of some groups; the other coefficients keep the given
-  /// values.
-  Fitted fitted(const std::vector<std::size_t>& groups) const;
-  /// Variance of one row of the whitened residuals after this fit.
-  double variance(const std::vector<std::size_t>& groups) const;
-  /// Marks coefficients that the flights do not determine, and sets the scale of the changes of each.
-  void describe(std::vector<WhatIfCoefficient>& coefficients) const;
 
   TeamColumns flights_;
   TeamColumns others_;
@@ -70,11 +52,6 @@ class WhatIfFit {
   Eigen::VectorXd start_{};
   Eigen::VectorXd given_{};  // given values less the start values
   BinnedFlights binned_{};
-  std::vector<FlownRegime> regimes_{};
-  // Products of (columns, residual): as a refit weighs the rows, and in units of the noise without its memory
-  Eigen::MatrixXd least_squares_{};
-  Eigen::MatrixXd information_{};
-  double row_count_ = 0.0;
 };
 
 }  // namespace pcor::internal

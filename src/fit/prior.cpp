@@ -45,7 +45,7 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
   // The inverse root, of the correlations: coefficients of one law may differ by powers of ten.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   constexpr double min_eigenvalue = 1e-10;  // nearly certain directions are treated as equal
-  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * covariance * scale.asDiagonal());
+  const SymmetricEigen solver(scale.asDiagonal() * covariance * scale.asDiagonal());
   rows(stated, stated) =
       solver.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt().cwiseInverse().asDiagonal() *
       solver.eigenvectors().transpose() * scale.asDiagonal();

@@ -352,18 +352,21 @@ class ForwardSelection {
     const std::size_t added = result_.steps.size() - 1;
     if (added >= loop_.max_steps)
       return stop(StopReason::max_steps, fmt::format("{} effects were added, the maximum", added));
-    candidates.resize(std::min(candidates.size(), loop_.max_steps - added));
     std::vector<std::string> refusals;
     for (OfferedEffect& candidate : candidates) {
-      const std::string refusal = refusal_of(std::move(candidate));
-      if (refusal.empty()) {
-        refusals.clear();
-      } else {
-        refusals.push_back(refusal);
+      std::string refusal = refusal_of(std::move(candidate));
+      if (!refusal.empty()) {
+        refusals.push_back(std::move(refusal));
+      } else if (!all || result_.steps.size() > loop_.max_steps) {
+        break;
       }
-      if (refusal.empty() != all) break;
     }
-    if (!refusals.empty()) stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
+    // After an addition, the diagnosis of the extended model has the next candidates.
+    if (result_.steps.size() > added + 1) {
+      notes_.insert(notes_.end(), refusals.begin(), refusals.end());
+    } else {
+      stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
+    }
   }
 
   void stop(StopReason reason, std::string why) {
@@ -371,7 +374,7 @@ class ForwardSelection {
     result_.why_stopped = std::move(why);
   }
 
-  /// Whether the diagnosis names each cause: then all candidates are added, otherwise the first that helps.
+  /// Whether the diagnosis names each cause: then all candidates that help are added, otherwise the first.
   bool names_causes() const {
     return diagnosis().verdict == Verdict::identified || diagnosis().verdict == Verdict::ambiguous;
   }

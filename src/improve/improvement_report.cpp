@@ -122,10 +122,11 @@ void name_held_out(Report& report, const Improvement& improvement) {
 /// Flights of the diagnoses, followed by completely held-out flights.
 Flights shown_flights(const Improvement& improvement) {
   Flights flights = improvement.steps.front().diagnosis.flights;
-  for (std::size_t f = flights.size(); f < improvement.flights.size(); ++f) {
+  for (const ImprovedFlight& held_out : improvement.flights) {
+    if (held_out.fitted > 0 || held_out.held_out == 0) continue;
     FlightDiagnosis& flight = flights.emplace_back();
-    flight.samples = improvement.flights[f].samples;
-    flight.before = improvement.flights[f].best;
+    flight.samples = held_out.samples;
+    flight.before = held_out.best;
   }
   return flights;
 }

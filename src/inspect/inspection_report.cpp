@@ -4,14 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <pcor/base/utc.hpp>
 #include "base/phrasing.hpp"
 #include "report/columns.hpp"
 #include "report/residual_pictures.hpp"
-#include "residuals/report_flight.hpp"
+#include "residuals/flight_report.hpp"
 
 namespace pcor {
 
@@ -54,7 +54,8 @@ std::string title_of(const Inspection& flight) {
 }  // namespace
 
 Report inspection_report(const std::vector<Inspection>& flights) {
-  Report report;
+  FlightReport samples;
+  Report& report = samples.report();
   report.title = flights.size() == 1 ? title_of(flights.front())
                                      : fmt::format("Roles and manoeuvres of {} flights", flights.size());
   for (const Inspection& flight : flights) {
@@ -72,53 +73,25 @@ Report inspection_report(const std::vector<Inspection>& flights) {
         report.info.emplace_back(label_of(note), note.text);
     }
     if (!flight.samples) continue;
-    report.flight_starts.push_back(report.time.size());
-    report.flight_names.push_back(flight.samples->name);
-    report.time.insert(report.time.end(), flight.samples->time.begin(), flight.samples->time.end());
-    for (const Interval& interval : flight.intervals)
-      report.intervals.push_back({std::string(info_of(interval.regime).name), interval.begin, interval.end});
+    std::vector<std::size_t> all(flight.samples->time.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    samples.add_flight(flight.samples, std::move(all));
   }
-  if (!report.time.empty()) {
-    // Adds a series of the flights that have samples, one after another.
-    const auto add = [&](const char* name, const char* title, const char* unit, const auto& series) {
-      ReportColumn column{name, title, unit, {}};
-      for (const Inspection& flight : flights) {
-        if (!flight.samples) continue;
-        std::vector<double> part = series(*flight.samples);
-        part.resize(flight.samples->time.size(), std::nan(""));
-        column.values.insert(column.values.end(), part.begin(), part.end());
-      }
-      add_if_present(report, std::move(column));
-    };
-    add("altitude", "altitude", "m", [](const FlightSamples& flight) { return flight.motion.altitude; });
-    add("airspeed", "true airspeed", "m/s",
-        [](const FlightSamples& flight) { return flight.motion.airspeed; });
-    add("ground_speed", "ground speed", "m/s",
-        [](const FlightSamples& flight) { return flight.motion.ground_speed; });
-    add("pitch", "pitch", "deg", [](const FlightSamples& flight) { return flight.motion.pitch; });
-    add("roll", "roll", "deg", [](const FlightSamples& flight) { return flight.motion.roll; });
-    add("latitude", "latitude", "deg", [](const FlightSamples& flight) { return flight.latitude; });
-    add("longitude", "longitude", "deg", [](const FlightSamples& flight) { return flight.longitude; });
-    add_strip(report);
-  }
+  for (const char* const name : {"altitude", "true_airspeed", "ground_speed", "pitch", "roll"})
+    samples.add_motion(name);
+  samples.add_position();
+  add_strip(report);
   for (const Inspection& flight : flights) {
     if (!flight.roles.empty()) report.items.emplace_back(roles_of(flight));
     if (!flight.missing.empty()) report.items.emplace_back(missing_of(flight));
   }
-  if (!report.time.empty()) {
-    add_if_present(report, TimePanel{"Height", "Altitude in time; regimes are shaded.", {"altitude"}});
-    add_if_present(
-        report, TimePanel{"Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"}});
-    add_if_present(report, TimePanel{"Attitude", "Pitch and roll.", {"pitch", "roll"}});
-    std::vector<ReportBarb> wind;
-    for (const Inspection& flight : flights) {
-      if (!flight.samples) continue;
-      const std::vector<ReportBarb> part = wind_of(*flight.samples);
-      wind.insert(wind.end(), part.begin(), part.end());
-    }
-    add_track(report, "Track", "Ground track, coloured by altitude.", "altitude", std::move(wind), false);
-  }
-  return report;
+  add_if_present(report, TimePanel{"Height", "Altitude in time; regimes are shaded.", {"altitude"}});
+  add_if_present(
+      report,
+      TimePanel{"Speed", "True airspeed and speed over the ground.", {"true_airspeed", "ground_speed"}});
+  add_if_present(report, TimePanel{"Attitude", "Pitch and roll.", {"pitch", "roll"}});
+  add_track(report, "Track", "Ground track, coloured by altitude.", "altitude", false);
+  return std::move(report);
 }
 
 }  // namespace pcor

@@ -11,16 +11,25 @@ Eigen::VectorXd inverse_above(double minimum, Eigen::VectorXd eigenvalues) {
 
 }  // namespace
 
-SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) { return SymmetricEigen(matrix); }
+SymmetricEigen::SymmetricEigen(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  eigenvalues_ = solver.eigenvalues();
+  eigenvectors_ = solver.eigenvectors();
+  for (Eigen::Index k = 0; k < eigenvectors_.cols(); ++k) {
+    Eigen::Index largest = 0;
+    eigenvectors_.col(k).cwiseAbs().maxCoeff(&largest);
+    if (eigenvectors_(largest, k) < 0.0) eigenvectors_.col(k) *= -1.0;
+  }
+}
 
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
-  return SymmetricEigen(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const SymmetricEigen eigen = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+  const SymmetricEigen eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
   return scale.asDiagonal() * eigen.eigenvectors() *
          eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }

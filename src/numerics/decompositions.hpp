@@ -6,13 +6,22 @@
 
 namespace pcor::internal {
 
-using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
-
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix, of which the lower triangle is
-/// read.
-SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
+/// read. The largest component of each eigenvector is positive: matrices that are nearly equal have nearly
+/// equal eigenvectors.
+class SymmetricEigen {
+ public:
+  explicit SymmetricEigen(const Eigen::MatrixXd& matrix);
 
-/// Its eigenvalues alone.
+  const Eigen::VectorXd& eigenvalues() const { return eigenvalues_; }
+  const Eigen::MatrixXd& eigenvectors() const { return eigenvectors_; }
+
+ private:
+  Eigen::VectorXd eigenvalues_;
+  Eigen::MatrixXd eigenvectors_;
+};
+
+/// Eigenvalues alone, ascending, of a symmetric matrix.
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
 /// Root R of a covariance of unknowns of different orders of magnitude, R R' = C: rows scaled by standard

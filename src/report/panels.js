@@ -70,7 +70,6 @@ class Panel {
     tools.prepend(this.readout);
     section.querySelector('h2').after(tools, this.picture, this.choice());
     this.switches = this.makeSwitches();
-    if (item.wind?.length) this.addBarbs(tools);
     if (this.switches.length) this.picture.before(make('div', {class: 'chips', role: 'group', 'aria-label': 'Curves'}, ...this.switches));
     this.whole = make('p', {class: 'hint whole', hidden: ''}, 'This picture shows all samples.');
     this.picture.after(this.whole);
@@ -99,15 +98,6 @@ class Panel {
         this.changed();
       },
     }, make('span', {class: 'swatch'}), title));
-  }
-
-  addBarbs(tools) {
-    const button = make('button', {type: 'button', 'aria-pressed': 'false', onclick: () => {
-      this.item.barbs = !this.item.barbs;
-      button.setAttribute('aria-pressed', String(this.item.barbs));
-      this.draw();
-    }}, 'Wind barbs');
-    tools.prepend(button);
   }
 
   get height() {

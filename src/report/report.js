@@ -1,7 +1,7 @@
 // Starts the page. `window.pcorReport` is the report for the tests.
 //
 // Words after # in the address: "light" and "dark" choose the colours, "export" keeps only the pictures, for
-// figures.cpp, and "for=slide" sets their purpose (see `uses`).
+// tools/pcor-figures, and "for=slide" sets their purpose (see `uses`).
 
 const wishes = location.hash.slice(1).split('+');
 

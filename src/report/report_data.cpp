@@ -19,7 +19,6 @@
 #include <vector>
 
 #include "report/report_data.hpp"
-#include "report/thinned.hpp"
 
 namespace pcor {
 
@@ -41,13 +40,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairPanel, x, y, lines)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegimeTable, columns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BarPanel, bars, axis, unit)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CurvePanel, curves, x_axis, axis, x_unit, unit)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrackPanel, latitude, longitude, colour, diverging)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StripPanel, columns)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RegimePanel, columns, axis)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(QuantilePanel, columns, axis)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DotPanel, series, rows, lines, axis, unit, band)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCoefficient, name, unit, given, start, minimum, maximum, fixed,
                                    argument)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfSeparation, effect, rival, text)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCommands, add, model, with, refit, stem)
 
 }  // namespace pcor
@@ -142,13 +141,19 @@ void check_columns(const Report& report, const std::map<std::string, bool>& show
   }
 }
 
+// First sample of each flight, and the number of samples.
+std::vector<std::size_t> bounds_of(const Report& report) {
+  std::vector<std::size_t> bounds = report.flight_starts;
+  if (bounds.empty() && !report.time.empty()) bounds.push_back(0);
+  bounds.push_back(report.time.size());
+  return bounds;
+}
+
 // Flights with the time of their samples: `start` in seconds since 1970, and the milliseconds between
 // successive samples, beginning with the difference between the first one and the start.
 json flights(const Report& report) {
   constexpr double max_time = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::size_t> bounds = report.flight_starts;
-  if (bounds.empty() && !report.time.empty()) bounds.push_back(0);
-  bounds.push_back(report.time.size());
+  const std::vector<std::size_t> bounds = bounds_of(report);
   json all = json::array();
   for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
     if (bounds[flight] == bounds[flight + 1]) continue;
@@ -185,24 +190,37 @@ json sums_json(const std::vector<WhatIfSums>& all) {
   return sums;
 }
 
-// Samples at which the columns are kept, and their values there.
+// Samples at which the columns are kept, of those with a value in all columns: all in a flight of up to
+// 16,000; in a longer flight every second (third ...) and the last one.
+std::vector<std::uint32_t> what_if_points(const WhatIfPanel& panel, const Report& report) {
+  constexpr std::size_t max_points = 16000;  // of a flight
+  const std::vector<std::size_t> bounds = bounds_of(report);
+  std::vector<std::uint32_t> points;
+  for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
+    std::vector<std::uint32_t> known;
+    for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
+      if (std::all_of(panel.coefficients.begin(), panel.coefficients.end(),
+                      [i](const WhatIfCoefficient& each) { return std::isfinite(each.column[i]); }))
+        known.push_back(static_cast<std::uint32_t>(i));
+    }
+    const std::size_t step = (known.size() + max_points - 1) / max_points;
+    for (std::size_t k = 0; k < known.size(); ++k)
+      if (k % step == 0 || k + 1 == known.size()) points.push_back(known[k]);
+  }
+  return points;
+}
+
+// Points of the columns, and their values there.
 json what_if_columns(const WhatIfPanel& panel, const Report& report) {
-  constexpr std::size_t max_points = 4000;
-  // The kept values are drawn only; a hundredth of the noise is invisible.
-  const double enough = 0.01 * panel.noise;
-  std::vector<ScaledSeries> series;
-  for (const WhatIfCoefficient& coefficient : panel.coefficients)
-    series.push_back({&coefficient.column, coefficient.size});
-  const std::vector<std::size_t> points =
-      thinned(report.time, report.flight_starts, series, max_points, enough);
+  const std::vector<std::uint32_t> points = what_if_points(panel, report);
   json columns = json::array();
   for (const WhatIfCoefficient& coefficient : panel.coefficients) {
     ReportColumn column;
-    for (const std::size_t i : points) column.values.push_back(coefficient.column[i]);
+    for (const std::uint32_t i : points) column.values.push_back(coefficient.column[i]);
     const json kept = quantised(column);
     columns.push_back({{"least", kept["least"]}, {"step", kept["step"]}, {"values", kept["values"]}});
   }
-  return {{"points", packed({points.begin(), points.end()})}, {"columns", std::move(columns)}};
+  return {{"points", packed(points)}, {"columns", std::move(columns)}};
 }
 
 // Content of an item, without its title.
@@ -212,19 +230,6 @@ struct ItemJson {
   template <class Panel>
   json operator()(const Panel& panel) const {
     return panel;
-  }
-  json operator()(const TrackPanel& panel) const {
-    const auto rounded = [](double speed) {
-      return std::round(10.0 * speed) / 10.0;
-    };  // resolution of a barb
-    json wind = json::array();
-    for (const ReportBarb& barb : panel.wind)
-      wind.push_back({{"time", barb.time}, {"east", rounded(barb.east)}, {"north", rounded(barb.north)}});
-    return {{"latitude", panel.latitude},
-            {"longitude", panel.longitude},
-            {"colour", panel.colour},
-            {"diverging", panel.diverging},
-            {"wind", wind}};
   }
   json operator()(const WhatIfPanel& panel) const {
     json effects = json::array();
@@ -257,7 +262,6 @@ struct ItemJson {
               {"heldOut", sums_json(panel.held_out)},
               {"noise", panel.noise},
               {"noiseLabel", panel.noise_label},
-              {"separations", panel.separations},
               {"commands", panel.commands}};
     item.update(what_if_columns(panel, report));
     return item;

@@ -61,7 +61,7 @@ void add_distributions(Report& report, const std::vector<std::string>& residuals
 }
 
 void add_strip(Report& report) {
-  std::vector<std::string> shown = present(report, {"altitude", "airspeed", "true_airspeed"});
+  std::vector<std::string> shown = present(report, {"altitude", "true_airspeed"});
   if (shown.empty()) return;
   report.items.emplace_back(StripPanel{
       "Height, speed and regimes", "Altitude, speed and regimes of the flight, with a lane for each regime.",
@@ -69,10 +69,9 @@ void add_strip(Report& report) {
 }
 
 void add_track(Report& report, const std::string& title, const std::string& caption,
-               const std::string& colour, std::vector<ReportBarb> wind, bool diverging) {
+               const std::string& colour, bool diverging) {
   if (meet(report.columns, {"latitude", "longitude", colour}))
-    report.items.emplace_back(
-        TrackPanel{title, caption, "latitude", "longitude", colour, diverging, std::move(wind)});
+    report.items.emplace_back(TrackPanel{title, caption, "latitude", "longitude", colour, diverging});
 }
 
 }  // namespace pcor::internal

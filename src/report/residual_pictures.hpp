@@ -15,11 +15,11 @@ void add_regimes(Report& report, const std::vector<std::string>& residuals);
 /// Distribution of residuals over periods, and comparison with normal noise.
 void add_distributions(Report& report, const std::vector<std::string>& residuals);
 
-/// Height, speed and regimes: the columns "altitude" and "airspeed" or "true_airspeed".
+/// Height, speed and regimes: the columns "altitude" and "true_airspeed".
 void add_strip(Report& report);
 
-/// Track, from the columns "latitude" and "longitude", with one column by colour, and the wind on request.
+/// Track, from the columns "latitude" and "longitude", with one column by colour.
 void add_track(Report& report, const std::string& title, const std::string& caption,
-               const std::string& colour, std::vector<ReportBarb> wind = {}, bool diverging = true);
+               const std::string& colour, bool diverging = true);
 
 }  // namespace pcor::internal

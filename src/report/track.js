@@ -34,22 +34,6 @@ const degreesText = (degrees, step, [positive, negative]) => {
   return `${number(Math.abs(turned), step)}°${side}`;
 };
 
-// Wind in m/s as a barb at a position: the shaft points to the origin of the wind; feathers give knots.
-function barb(pen, x, y, east, north, colour) {
-  const speed = Math.hypot(east, north);
-  let knots = Math.round(speed * 1.943844 / 5) * 5;
-  if (knots < 5) { pen.lines([[x - 3, y, x, y - 3, x + 3, y, x, y + 3, x - 3, y]], colour, 1.25); return; }
-  const [a, b] = [-east / speed, north / speed];  // along the shaft on the picture, whose y axis points down
-  const at = (along, aside) => [x + along * a - aside * b, y + along * b + aside * a];
-  const length = 26, paths = [[...at(0, 0), ...at(length, 0)]];
-  let along = length;
-  for (; knots >= 50; knots -= 50, along -= 7)
-    paths.push([...at(along, 0), ...at(along - 2.5, 9), ...at(along - 5, 0)]);
-  for (; knots >= 10; knots -= 10, along -= 4) paths.push([...at(along, 0), ...at(along + 2, 9)]);
-  if (knots >= 5) paths.push([...at(along === length ? along - 4 : along, 0), ...at((along === length ? along - 4 : along) + 1, 5)]);
-  pen.lines(paths, colour, 1.25);
-}
-
 // Positions of the samples of a track, in kilometres from its middle, and their extent; computed once.
 function placesOf(item, samples) {
   return item.places ??= (() => {
@@ -120,7 +104,6 @@ function drawTrack(pen, width, height, item, samples, theme) {
   pen.clip(box, () => {
     pen.dots(places.flatMap(placeOf), 1.5, theme.frame, 0.6);
     paint(pen, found, placeOf, 3.5);
-    if (item.barbs) drawBarbs();
     const along = places.filter((_, n) => n % Math.ceil(places.length / 1000) === 0).map(placeOf);
     const taken = [[box.x, box.x + 60 + bar / perPixel, box.y + 20]];  // left, right and line of each name
     for (const flight of samples.flights) {
@@ -144,20 +127,6 @@ function drawTrack(pen, width, height, item, samples, theme) {
       pen.text(left, line, words, {...small(theme), fill: theme.ink, halo: theme.paper});
     }
   });
-  // Barbs that do not overlap.
-  function drawBarbs() {
-    const drawn = [];
-    for (const {time, east: u, north: v} of item.wind) {
-      const i = places.reduce((best, each) =>
-        Math.abs(samples.time[each] - time) < Math.abs(samples.time[best] - time) ? each : best, places[0]);
-      const [px, py] = placeOf(i);
-      if (Math.abs(samples.time[i] - time) > 60 || drawn.some(([ox, oy]) => Math.hypot(px - ox, py - oy) < 34)) continue;
-      drawn.push([px, py]);
-      const ahead = project(lat.values[i] + 0.01, lon.values[i]);  // direction of north in the picture
-      const turn = Math.atan2(ahead[0] - at.get(i)[0], ahead[1] - at.get(i)[1]);
-      barb(pen, px, py, u * Math.cos(turn) + v * Math.sin(turn), v * Math.cos(turn) - u * Math.sin(turn), theme.ink);
-    }
-  }
   pen.lines([[box.x + 12, box.y + 14, box.x + 12, box.y + 18, box.x + 12 + bar / perPixel, box.y + 18,
     box.x + 12 + bar / perPixel, box.y + 14]], theme.ink, 1.25);
   pen.text(box.x + 18 + bar / perPixel, box.y + 20, `${number(bar, bar)} km`,

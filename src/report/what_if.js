@@ -220,7 +220,7 @@ class WhatIf {
       return select;
     });
     const labels = ['One', 'The other'].map((words, side) => make('label', {class: 'choice'}, words, this.selects[side]));
-    this.pairWords = make('div', {class: 'what-if-words'});
+    this.pairWords = make('p', {class: 'what-if-words'});
     this.pairTable = make('table', {class: 'regime-table'});
     this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'change of the residual'},
       'Reduction of the residual by each effect alone, with the model fitted again: where the two curves differ, these flights distinguish the effects.',
@@ -414,11 +414,8 @@ class WhatIf {
     });
     const [a, b] = this.pair;
     const alike = correlationOf(...this.sides.map(({values}) => values), samples.indices(this.sides, samples.every));
-    const separation = item.separations.find(({effect, rival}) => effect === a && rival === b);
-    const sentences = a === b ? ['Choose two effects.'] : [
-      `On these flights the two have a correlation of ${number(alike, 0.001)}, after fitting the model’s coefficients.`,
-      separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No tested manoeuvre distinguishes them.'];
-    this.pairWords.replaceChildren(...sentences.map((words) => make('p', {}, words)));
+    this.pairWords.textContent = a === b ? 'Choose two effects.'
+      : `On these flights the two have a correlation of ${number(alike, 0.001)}, after fitting the model’s coefficients.`;
   }
 
   fillPairTable() {

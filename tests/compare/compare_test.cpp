@@ -312,6 +312,27 @@ TEST(Compare, KeepsRecordsOfChosenFlightsOnly) {
   testing::internal::GetCapturedStderr();
 }
 
+TEST(Compare, ResidualFileNamesItsQuantities) {
+  const pcor::test::TemporaryDirectory directory;
+  const pcor::Flight input(flight_file());
+  const auto description = [&](const std::shared_ptr<const pcor::Reference>& reference,
+                               const char* variable) {
+    ComparedModel contender = laser_contender();
+    contender.references = {reference};
+    CompareOptions options;
+    options.separates_atmosphere = false;
+    pcor::write_residuals(pcor::compare({flight_file()}, {contender}, options), 0, input,
+                          directory / "residuals.nc", "");
+    return pcor::Flight(directory / "residuals.nc").variable(variable).long_name;
+  };
+  EXPECT_EQ(description(pcor::lams_reference(), "RESIDUAL_1"),
+            "Static pressure of LAMS minus static pressure of the model true law");
+  const auto wind = pcor::wind_reference(laser_contender().model);
+  for (const char* const variable : {"RESIDUAL_1", "PCOR_REFERENCE_1"})
+    EXPECT_THAT(description(wind, variable),
+                testing::AllOf(HasSubstr(wind->description()), testing::Not(HasSubstr("tatic pressure"))));
+}
+
 TEST(Compare, ImpossibleComparisonIsRefused) {
   const auto refusal = [](const std::vector<fs::path>& flights, const ComparedModel& contender,
                           const CompareOptions& options = {}) {

@@ -26,7 +26,7 @@ namespace cereal {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::WhatIfCoefficient& coefficient) {
-  archive(coefficient.name, coefficient.given, coefficient.start, coefficient.fixed, coefficient.size);
+  archive(coefficient.name, coefficient.given, coefficient.start, coefficient.fixed);
 }
 
 template <class Archive>
@@ -37,11 +37,6 @@ void serialize(Archive& archive, pcor::WhatIfSums& sums) {
 template <class Archive>
 void serialize(Archive& archive, pcor::WhatIfWeights& weights) {
   archive(weights.effects, weights.parts, weights.score_covariance);
-}
-
-template <class Archive>
-void serialize(Archive& archive, pcor::WhatIfSeparation& separation) {
-  archive(separation.effect, separation.rival, separation.text);
 }
 
 template <class Archive>
@@ -174,7 +169,6 @@ TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
     return what_if(all.part(0, paths.size() - 1), model(), {lams_reference()}, candidates, with);
   };
   const WhatIf alone = of_team(pcor::serial_communicator(), options);
-  EXPECT_THAT(alone.panel.separations, Not(IsEmpty()));
   EXPECT_GT(alone.panel.held_out.samples, 0.0);
   for (const std::size_t size : {2U, 6U}) {
     run(size, [&](Communicator& comm) {
@@ -184,7 +178,6 @@ TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
       EXPECT_EQ(packed(found.panel.alike), packed(alone.panel.alike));
       EXPECT_EQ(packed(found.panel.outliers), packed(alone.panel.outliers));
       EXPECT_EQ(packed(found.panel.held_out), packed(alone.panel.held_out));
-      EXPECT_EQ(packed(found.panel.separations), packed(alone.panel.separations));
       EXPECT_EQ(packed(found.flights), packed(alone.flights));
     });
   }

@@ -382,6 +382,13 @@ TEST(DiagnosisReport, NamesTheCoefficientsThatAreFittedAgain) {
   EXPECT_THAT(regimes.caption, HasSubstr("the reference system fitted again"));
 }
 
+// A reference need not be a static pressure: wind, height, total pressure.
+TEST(DiagnosisReport, ResidualIsNotCalledAStaticPressure) {
+  const Report report = diagnosis_report(partial(), model());
+  EXPECT_THAT(item<TimePanel>(report, "Residual in time").caption,
+              AllOf(HasSubstr("reference minus model"), Not(HasSubstr("tatic pressure"))));
+}
+
 TEST(DiagnosisReport, WhatIfHasTheNoiseOfTheReport) {
   Diagnosis diagnosis = partial();
   diagnosis.noise_rms_with_findings = 0.06;
@@ -518,6 +525,26 @@ TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   EXPECT_EQ(time.averaging_time, 60.0);
   EXPECT_THAT(time.columns, ElementsAre("model-given", "model-refitted", "model-best"));
   split_words(report);
+}
+
+// The diagnoses do not have a flight of which no sample is used.
+TEST(ImprovementReport, UnusedFlightDoesNotShiftTheOthers) {
+  Improvement made = improvement();
+  FlightDiagnosis unused = made.steps[0].diagnosis.flights.front();
+  unused.samples = renamed(*unused.samples, "rf00");
+  made.flights.push_back(improved(unused, 0));
+  made.flights.back().held_out = 0;
+  for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights)
+    made.flights.push_back(improved(one, one.before.size()));
+  made.flights[1].best.assign(made.flights[1].best.size(), 1.0);
+  made.flights[2].best.assign(made.flights[2].best.size(), 2.0);
+  const Report report = improvement_report(made, model());
+  EXPECT_THAT(report.flight_names, ElementsAre("rf01", "rf02"));
+  const auto best = std::find_if(report.columns.begin(), report.columns.end(),
+                                 [](const ReportColumn& column) { return column.name == "model-best"; });
+  ASSERT_NE(best, report.columns.end());
+  EXPECT_EQ(best->values.front(), 1.0);
+  EXPECT_EQ(best->values.back(), 2.0);
 }
 
 TEST(ImprovementReport, StatesWhatIsNotInTheFit) {

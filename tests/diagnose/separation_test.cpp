@@ -144,19 +144,14 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
   own.id = "my-thrust";
   own.formula = "k * ENGTRQ";
   EXPECT_THAT(general_advice("my-thrust", own), testing::IsEmpty());
-  EXPECT_FALSE(is_separated(rivalry));
 }
 
-// More of the same regimes is not advised if the flights already separate the effect nearly or fully.
+// More of the same regimes is not advised if the flights already nearly separate the effect.
 TEST(Separation, RegimeWithLittleInformationIsNotAdvised) {
   const Eigen::MatrixXd rows = rows_of(300, 0.9);
   const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};
-  for (const double size : {0.4, 0.5}) {
-    const SeparationProblem rivalry = rivalry_of(rows, size);
-    EXPECT_EQ(best_plan(nothing, rivalry).regime, nullptr) << size;
-    EXPECT_FALSE(is_separated(rivalry)) << size;
-  }
-  EXPECT_TRUE(is_separated(rivalry_of(rows, 2.0)));
+  for (const double size : {0.4, 0.5})
+    EXPECT_EQ(best_plan(nothing, rivalry_of(rows, size)).regime, nullptr) << size;
 }
 
 constexpr double step = 4.0;  // s: every record is a bin

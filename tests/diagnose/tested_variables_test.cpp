@@ -60,6 +60,19 @@ TEST_F(RecordedVariables, LowerRatesAreInterpolated) {
   EXPECT_THAT(variable.sampling, testing::HasSubstr("one value in 10 records, interpolated"));
 }
 
+// Spellings of degrees of a temperature and of an angular rate; the values are no angles, which are held.
+TEST_F(RecordedVariables, DegreesOfOtherQuantitiesAreInterpolated) {
+  std::vector<double> values(records, nan);
+  for (std::size_t i = 0; i < records; i += 10) values[i] = 4.0 * static_cast<double>(i);
+  for (const char* const unit : {"degC", "degree_Celsius", "degrees_C", "degF", "deg/s"}) {
+    const TestedVariable variable = read(unit, values);
+    EXPECT_NEAR(variable.values[0]->at(37), 148.0, 1e-4) << unit;  // floats in the file
+    EXPECT_THAT(variable.sampling, testing::HasSubstr("interpolated")) << unit;
+    EXPECT_EQ(variable.turn, 0.0) << unit;
+  }
+  EXPECT_THAT(read("degrees_true", values).sampling, testing::HasSubstr("held"));
+}
+
 TEST_F(RecordedVariables, GapsAreKept) {
   std::vector<double> values(records, 1.0);
   for (std::size_t i = 20; i < 55; ++i) values[i] = nan;
@@ -77,7 +90,7 @@ TEST_F(RecordedVariables, VariablesThatCoverTheCircleAreAngles) {
   }
   EXPECT_EQ(read("degree_T", heading).turn, 360.0);
   EXPECT_EQ(read("degree", attack).turn, 0.0);
-  EXPECT_EQ(read("percent", heading).turn, 0.0);
+  for (const char* const unit : {"percent", "radian", "1"}) EXPECT_EQ(read(unit, heading).turn, 0.0) << unit;
   for (double& value : heading) value /= 15.0;
   EXPECT_EQ(read("hours", heading, 1, {0.0, 24.0}).turn, 24.0);
 }

@@ -212,6 +212,33 @@ TEST_F(Improve, DropsAnEffectThatRaisesTheHeldOutResidual) {
   }
 }
 
+TEST_F(Improve, RefusedFindingIsFollowedByTheOthers) {
+  const Improvement improvement =
+      run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}), diagnosis(Verdict::silent)},
+          {1.0, 1.1, 0.5});
+  EXPECT_THAT(added(improvement), ElementsAre("", "static-mach"));
+  EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
+  ASSERT_EQ(improvement.fit.notes.size(), 1U);
+  EXPECT_THAT(improvement.fit.notes[0].text, HasSubstr("static-lag was tried and dropped"));
+}
+
+TEST_F(Improve, FindingsOfTheLastDiagnosisAreTriedBeforeTheEnd) {
+  const Improvement improvement =
+      run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
+           diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::silent)},
+          {1.0, 0.7, 0.8, 0.5});
+  EXPECT_THAT(added(improvement), ElementsAre("", "static-lag", "static-mach2"));
+  EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
+}
+
+TEST_F(Improve, RefusedFindingDoesNotCountAsAStep) {
+  loop_.max_steps = 1;
+  EXPECT_THAT(
+      added(run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}), diagnosis(Verdict::silent)},
+                {1.0, 1.1, 0.5})),
+      ElementsAre("", "static-mach"));
+}
+
 /// A diagnosis that cannot separate two effects; the first is present with `probability`.
 Diagnosis two_rivals(const std::string& one, const std::string& other, double probability) {
   Diagnosis unclear = diagnosis(Verdict::ambiguous, {one});

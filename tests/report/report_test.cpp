@@ -219,7 +219,6 @@ WhatIfPanel what_if_of(std::size_t samples) {
   panel.residual = "c0";
   panel.coefficients = {{"static-constant.a0", "1"}, {"tau", "s"}};
   for (WhatIfCoefficient& coefficient : panel.coefficients) {
-    coefficient.size = 1.0;
     for (std::size_t i = 0; i < samples; ++i) coefficient.column.push_back(0.5 * static_cast<double>(i));
   }
   panel.own = 1;
@@ -240,10 +239,41 @@ TEST(Report, WhatIfSumsAreStoredExactly) {
   ASSERT_EQ(bytes.size(), products.size() * sizeof(double));
   std::memcpy(products.data(), bytes.data(), bytes.size());
   EXPECT_EQ(products, (std::vector<double>{2.0, 1.0, 3.0, 0.5, 0.25, 4.0}));
-  EXPECT_EQ(unpacked(item["points"]), (std::vector<std::int64_t>{0, 99}));  // the columns are straight lines
-  EXPECT_THAT(values_of(item["columns"][1]), testing::ElementsAre(0.0, testing::DoubleNear(49.5, 1e-9)));
   EXPECT_EQ(item["isStartFitted"], false);
   EXPECT_EQ(item["noiseLabel"], "noise");
+}
+
+TEST(Report, WhatIfHasAllSamplesOfAFlightOf16000) {
+  constexpr std::size_t samples = 16003;  // three of them lack a column
+  Report report = report_of(samples, 1);
+  WhatIfPanel panel = what_if_of(samples);
+  panel.coefficients[0].column[0] = panel.coefficients[1].column[500] = panel.coefficients[1].column[501] =
+      nan;
+  report.items = {panel};
+  const auto item = data_of(report_html(report))["items"][0];
+  const std::vector<std::int64_t> points = unpacked(item["points"]);
+  ASSERT_EQ(points.size(), 16000U);
+  EXPECT_EQ(points.front(), 1);
+  EXPECT_EQ(points[499], 502);
+  EXPECT_EQ(points.back(), 16002);
+  const std::vector<double> column = values_of(item["columns"][1]);
+  ASSERT_EQ(column.size(), points.size());
+  // 16 bits for 8,000: half of a step of 0.12.
+  EXPECT_NEAR(column[499], 251.0, 0.062);
+}
+
+TEST(Report, WhatIfHasRegularSamplesOfEachLongerFlight) {
+  Report report = report_of(16001 + 5 + 32001, 1);
+  report.flight_starts = {0, 16001, 16006};
+  report.flight_names = {"rf01", "rf02", "rf03"};
+  report.items = {what_if_of(report.time.size())};
+  const auto item = data_of(report_html(report))["items"][0];
+  std::vector<std::int64_t> expected;
+  for (std::int64_t i = 0; i < 16001; i += 2) expected.push_back(i);
+  for (std::int64_t i = 16001; i < 16006; ++i) expected.push_back(i);
+  for (std::int64_t i = 16006; i < 48007; i += 3) expected.push_back(i);
+  expected.push_back(48006);  // the last one
+  EXPECT_EQ(unpacked(item["points"]), expected);
 }
 
 TEST(Report, RefusesTimeThatDoesNotIncrease) {

@@ -1,9 +1,7 @@
 // Writes a report with every kind of item on a flight that never was, for report_browser_test.py.
 //
 //   sample_report FILE [SAMPLES [FLIGHTS]]
-//   sample_report --figures FOLDER [page|column|slide]
 
-#include <pcor/report/figures.hpp>
 #include <pcor/report/report.hpp>
 
 #include <algorithm>
@@ -142,13 +140,7 @@ std::vector<pcor::ReportItem> items() {
       StripPanel{"Height, pressure and regimes", "Regimes flown.", {"altitude", "dynamic"}},
       RegimePanel{"Residual by regime", "Mean, and scatter about it.", {"old", "new"}, "Residual"},
       QuantilePanel{"Quantiles", "Noise lies on the line.", {"old", "new"}, "Residual"},
-      TrackPanel{"Residual on the map",
-                 "The track over the ground.",
-                 "latitude",
-                 "longitude",
-                 "old",
-                 true,
-                 {{start + 300, 9.0, -4.0}, {start + 1800, 30.0, 2.0}, {start + 4200, 0.4, 0.3}}},
+      TrackPanel{"Residual on the map", "The track over the ground.", "latitude", "longitude", "old"},
       DotPanel{"Checks",
                "A square in the band is consistent, a cross inconsistent, an open square inconclusive.",
                {""},
@@ -244,19 +236,10 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
 
 int main(int count, char** words) {
   if (count < 2) {
-    std::cerr << "usage: sample_report FILE [SAMPLES [FLIGHTS]]\n       sample_report --figures FOLDER "
-                 "[page|column|slide]\n";
+    std::cerr << "usage: sample_report FILE [SAMPLES [FLIGHTS]]\n";
     return 2;
   }
   try {
-    if (words[1] == std::string("--figures")) {
-      const std::string use = count > 3 ? words[3] : "page";
-      pcor::write_figures(sample_report(7080, 1), words[2],
-                          use == "slide"    ? pcor::FigureUse::slide
-                          : use == "column" ? pcor::FigureUse::column
-                                            : pcor::FigureUse::page);
-      return 0;
-    }
     pcor::write_report(
         sample_report(count > 2 ? std::stoul(words[2]) : 7080, count > 3 ? std::stoul(words[3]) : 1),
         words[1]);

@@ -220,6 +220,11 @@ class Compare(ComparisonTest):
                 omitted = int(re.search(r"(\d+) rows omitted \(--verbose\)", text).group(1))
                 self.assertGreaterEqual(omitted, len(all_rows) - len(rows))
 
+    def test_a_residual_of_zero_has_no_autocorrelation_time(self):
+        text = self.done("compare", ONE, "-m", self.model(), "--reference", f"static:{self.model()}").stdout
+        self.assertIn("worst minutes", text)
+        self.assertNotRegex(text, r"\bnan\b")
+
     def test_the_advised_command_names_few_of_many_flights(self):
         for many, shown in ((16, 16), (17, 2)):
             flights = [self.link(ONE if i % 2 else TWO, f"flight {many}-{i}.nc").name for i in range(many)]
@@ -942,9 +947,6 @@ class BadInput(ComparisonTest):
             with self.subTest(f"{option} {value}"):
                 self.refused("refit", ONE, "-m", model, option, value, words=[option], status=2)
                 (self.path / "out.toml").unlink(missing_ok=True)
-
-    def test_search_of_a_linear_problem_is_refused(self):
-        self.refused("refit", ONE, "-m", self.model(), "--search", words=["--search", "linear"])
 
 
 class BadOutput(ComparisonTest):

@@ -137,7 +137,6 @@ class OneEffect(WhatIfTest):
 
     def test_the_text_of_the_page_agrees_with_its_numbers(self):
         self.diagnosed(FIRST, SECOND)
-        # Not one sample in 2,000 is between points here.
         statistics = "statistics(pcorReport.samples.columns.get({!r}).values, pcorReport.samples.indices([pcorReport.samples.columns.get({!r})])).rms"
         self.assertAlmostEqual(self.value(statistics.format("before", "before")), self.diagnosis["residual_rms_hpa"], delta=1e-3)
         self.assertEqual(self.value(statistics.format("what-if", "what-if")), None)  # nothing is switched on
@@ -256,10 +255,8 @@ class OneEffect(WhatIfTest):
 
     def test_two_effects_are_compared(self):
         self.diagnosed(FIRST, SECOND)
-        effects = self.value("pcorReport.whatIf.item.effects.map(({id}) => id)")
-        self.assertEqual(effects[0], "static-lag")
+        self.assertEqual(self.value("pcorReport.whatIf.item.effects[0].id"), "static-lag")
         words = self.value("pcorReport.whatIf.pairWords.textContent")
-        self.assertIn(f"separate static-lag from {effects[1]}", words)
         self.assertRegex(words, r"correlation of (−?0\.\d{3})")
         of_all = self.value("pcorReport.whatIf.pairTable.tBodies[0].lastChild.lastChild.textContent")
         self.assertIn(f"correlation of {of_all}, after", words)

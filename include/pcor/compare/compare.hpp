@@ -70,7 +70,7 @@ struct ModelComparison {
   /// Fit of the corrected static pressure of the reference against that of the model, as distances from the
   /// line (memo, figure 2), if the reference is a static pressure.
   LineFit static_pressure{};
-  double autocorrelation_time = 1.0;
+  double autocorrelation_time = 1.0;  ///< samples; NaN if the residual does not scatter
   /// Standard deviation of the common bias due to the calibration of the reference and of the thermometer,
   /// hPa, in addition to `Statistics::bias_error`: typical sizes (`ParameterInfo::calibration_uncertainty`),
   /// or `[uncertainty]` of the models. Zero for references with a window (wind, height).
@@ -194,7 +194,8 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
                    const CompareOptions& options = {});
 
 /// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of
-/// the model PCOR_1 ... and of the reference PCOR_REFERENCE_1 ..., and the mask and the regimes as flags.
+/// the model PCOR_1 ..., their sum PCOR_REFERENCE_1 ... (delta-p of the reference, if that is a static
+/// pressure), and the mask and the regimes as flags.
 /// @param number index of the flight among those whose records are kept @param input the file of that flight
 /// @throws Error if the file cannot be written.
 void write_residuals(const Comparison& comparison, std::size_t number, const Flight& input,

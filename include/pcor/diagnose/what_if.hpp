@@ -52,8 +52,8 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
                                                 const std::vector<ModelEffect>& formulas);
 
 /// Data for interactive addition of effects to a model: derivatives of the residual with respect to the
-/// coefficients of model and effects, whitened sums for fits equivalent to `refit` (except for effects with a
-/// nonlinear residual), and criteria that separate the effects.
+/// coefficients of model and effects, and whitened sums for fits equivalent to `refit` (except for effects
+/// with a nonlinear residual).
 ///
 /// @throws Error as `diagnose`.
 WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const References& references,

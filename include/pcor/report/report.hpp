@@ -68,13 +68,6 @@ struct ReportLine {
   std::string label;
 };
 
-/// Wind vector at one time.
-struct ReportBarb {
-  double time = 0.0;  ///< s since 1970 UTC
-  double east = 0.0;  ///< m/s
-  double north = 0.0;
-};
-
 /// Ground track, in distances from its centre, with one column as colour.
 struct TrackPanel {
   std::string title;
@@ -84,7 +77,6 @@ struct TrackPanel {
   std::string colour;
   /// True: colour scale centred on zero, as for a residual; false: from minimum to maximum.
   bool diverging = true;
-  std::vector<ReportBarb> wind{};  ///< barbs, shown on request of the reader
 };
 
 /// Columns over time, each on a separate axis, with a lane below for the intervals of each name.
@@ -199,9 +191,8 @@ struct WhatIfCoefficient {
   double maximum = std::numeric_limits<double>::infinity();
   bool fixed = false;      ///< true: keeps its given value
   std::string argument{};  ///< command-line argument that names it, shell-quoted
-  double size = 0.0;       ///< typical change; the linearisation is checked over this range
-  /// Decrease of the residual per unit of the coefficient, one value per sample; NaN if unknown. Reports keep
-  /// the samples needed for linear interpolation, a few thousand at most.
+  /// Decrease of the residual per unit of the coefficient, one value per sample; NaN if unknown. Of a flight
+  /// of more than 16,000 samples the page has regular samples, between which it interpolates linearly.
   std::vector<double> column{};
 };
 
@@ -236,13 +227,6 @@ struct WhatIfWeights {
   std::vector<double> score_covariance;
 };
 
-/// Sentence on the data that separate two effects.
-struct WhatIfSeparation {
-  std::size_t effect = 0;
-  std::size_t rival = 0;
-  std::string text;
-};
-
 /// Commands to copy, ready for a shell.
 struct WhatIfCommands {
   std::string add;    ///< command up to the effects, e.g. "pcor add"
@@ -274,7 +258,6 @@ struct WhatIfPanel {
   WhatIfSums held_out{};          ///< unweighted sums of held-out data; empty if there are no held-out data
   double noise = 0.0;             ///< rms, hPa
   std::string noise_label = "noise";
-  std::vector<WhatIfSeparation> separations{};
   WhatIfCommands commands{};
 };
 
