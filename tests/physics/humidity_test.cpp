@@ -6,7 +6,6 @@
 
 namespace c = pcor::constants;
 using pcor::enhancement_factor;
-using pcor::mixing_ratio;
 using pcor::saturation_vapor_pressure;
 using pcor::vapor_pressure_from_dew_point;
 using pcor::vapor_pressure_over_ice;
@@ -133,12 +132,4 @@ TEST(DewPoint, EqualsTheTemperatureOfSaturatedAir) {
   EXPECT_LT(vapor_pressure_from_dew_point(T - 1, p), vapor_pressure_from_dew_point(T, p));
   EXPECT_TRUE(std::isnan(vapor_pressure_from_dew_point(missing, p)));
   EXPECT_TRUE(std::isnan(vapor_pressure_from_dew_point(T, missing)));
-}
-
-TEST(MixingRatio, IsTheRatioOfTheDensities) {
-  for (const double e : {0.0, 1.0, 10.0, 30.0}) {
-    const double p = 950.0, T = 290.0;
-    const double vapor = e / (c::gas_constant_water_vapor * T), dry = (p - e) / (c::gas_constant_dry_air * T);
-    EXPECT_NEAR(mixing_ratio(e, p), vapor / dry, 1e-16) << e;
-  }
 }

@@ -14,7 +14,7 @@ namespace {
 
 // Results of all functions of the physics for one sample, in the scalar S.
 template <class S>
-std::array<S, 24> everything(double p, double q, double v, double T, double e, double mach) {
+std::array<S, 22> everything(double p, double q, double v, double T, double e, double mach) {
   using namespace pcor;
   const MoistAir<S> air = moist_air(S(e) / S(p));
   const RecoveryFactor law{{0.988, 0.053, 0.090, 0.091}};
@@ -31,13 +31,11 @@ std::array<S, 24> everything(double p, double q, double v, double T, double e, d
           dynamic_pressure_from_mach(S(p), S(mach), air),
           dynamic_pressure_from_airspeed(S(p), S(v), S(T), air),
           true_airspeed(S(mach), S(T), air),
-          stagnation_temperature(S(T), S(mach), air),
           vapor_pressure_over_water(S(T)),
           vapor_pressure_over_ice(S(T)),
           saturation_vapor_pressure(S(T)),
           enhancement_factor(S(T), S(p)),
           vapor_pressure_from_dew_point(S(T), S(p)),
-          mixing_ratio(S(e), S(p)),
           factor,
           ambient_temperature(S(T), S(mach), factor, air),
           recovery_temperature(S(T), S(mach), factor, air),

@@ -96,11 +96,4 @@ S true_airspeed_from_heating(const S& heating, const S& temperature, const Moist
   return sqrt(S(2.0) * air.specific_heat_pressure * temperature * heating);
 }
 
-/// Stagnation temperature, K, at ambient `temperature` T (K) and Mach number M:
-/// T* = T + v^2/(2 c_p) = T (1 + M^2 (gamma-1)/2). NaN gives NaN. Source: memo eq. 5.
-template <class S>
-S stagnation_temperature(const S& temperature, const S& mach, const MoistAir<S>& air) {
-  return temperature * (S(1.0) + mach * mach * (air.heat_capacity_ratio - S(1.0)) * S(0.5));
-}
-
 }  // namespace pcor

@@ -54,44 +54,20 @@ S gravity_decrease(const S& latitude) {
          S(1.0 / constants::ellipsoid_semi_major_axis);
 }
 
-/// Gravity, m/s2, at `latitude` (degrees) and `height` (m above the ellipsoid; above the sea level does as
-/// well, 100 m are 3e-5 of gravity):
+/// Geopotential height, m, of the geometric `height` (m above the ellipsoid; above the sea level does as
+/// well, 100 m are 3e-5 of gravity) at `latitude` (degrees): the integral over height of
 ///
-///     g = gamma [1 - 2 (1 + f + m - 2 f sin^2) h/a + 3 h^2/a^2]
+///     g = gamma [1 - 2 (1 + f + m - 2 f sin^2) h/a + 3 h^2/a^2],
 ///
-/// Domain: -1 to 30 km; NaN gives NaN. Accuracy: 1.5e-7 of the normal field up to 20 km, 5e-7 up to 30 km.
-/// Source: NIMA TR8350.2 eq. 4-3.
-template <class S>
-S gravity(const S& latitude, const S& height) {
-  require_scalar<S>();
-  const S across = height * S(1.0 / constants::ellipsoid_semi_major_axis);
-  return normal_gravity(latitude) *
-         (S(1.0) - S(2.0) * gravity_decrease(latitude) * height + S(3.0) * across * across);
-}
-
-/// Geopotential height, m, of the geometric `height` (m) at `latitude` (degrees): the integral of `gravity`
-/// over height, divided by standard gravity. Lower than the geometric one by 4 m at 5 km and 45 degrees, and
-/// by 55 m at 12 km on the equator. Domain as `gravity`; accuracy 2 mm up to 20 km, 7 mm up to 30 km. Source:
-/// WMO-No. 8, part I, chapter 12.
+/// divided by standard gravity. Lower than the geometric one by 4 m at 5 km and 45 degrees, and by 55 m at
+/// 12 km on the equator. Domain: -1 to 30 km; NaN gives NaN. Accuracy: 2 mm up to 20 km, 7 mm up to 30 km.
+/// Source: WMO-No. 8, part I, chapter 12; g: NIMA TR8350.2 eq. 4-3.
 template <class S>
 S geopotential_height(const S& latitude, const S& height) {
   require_scalar<S>();
   const S across = height * S(1.0 / constants::ellipsoid_semi_major_axis);
   return normal_gravity(latitude) * S(1.0 / constants::standard_gravity) * height *
          (S(1.0) - gravity_decrease(latitude) * height + across * across);
-}
-
-/// The geometric height, m, of the geopotential `height` (m) at `latitude` (degrees): the inverse of
-/// `geopotential_height`, to 1e-6 m between -1 and 30 km.
-template <class S>
-S geometric_height(const S& latitude, const S& height) {
-  require_scalar<S>();
-  S geometric = height;
-  for (int step = 0; step < 3; ++step) {
-    const S excess = geopotential_height(latitude, geometric) - height;
-    geometric = geometric - excess * S(constants::standard_gravity) / gravity(latitude, geometric);
-  }
-  return geometric;
 }
 
 /// Coriolis parameter, 1/s: 2 Omega sin(latitude), latitude in degrees. Negative in the south.

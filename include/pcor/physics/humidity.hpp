@@ -96,12 +96,4 @@ S vapor_pressure_from_frost_point(const S& frost_point, const S& pressure) {
   return saturation_vapor_pressure(frost_point) * enhancement_factor(frost_point, pressure);
 }
 
-/// Mixing ratio of water vapour, kg/kg: r = eps e/(p - e), both pressures in one unit. Domain: 0 <= e < p,
-/// not checked; NaN gives NaN. Source: memo before eq. 13.
-template <class S>
-S mixing_ratio(const S& vapor_pressure, const S& pressure) {
-  require_scalar<S>();
-  return S(constants::molar_mass_ratio) * vapor_pressure / (pressure - vapor_pressure);
-}
-
 }  // namespace pcor
