@@ -66,9 +66,9 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::humidity_limited, "humidity_limited", "vapour pressure set to zero or to saturation",
      "vapour pressure below zero or above saturation: set to the limit"},
     {Quality::lams_missing, "lams_missing", "no valid airspeed from LAMS",
-     "no valid airspeed from LAMS, or its result is outside the plausible range, or LAMS is to correct and "
-     "its "
-     "delta-p is three tenths of the dynamic pressure from that of the model"},
+     "no valid airspeed from LAMS, or its result is outside the plausible range, or its delta-p differs by "
+     "more "
+     "than three tenths of the dynamic pressure from zero and from that of the model"},
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure",
      "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law",

@@ -188,7 +188,8 @@ class Chain : public BoundModel {
     const S delta = sum<S>(EffectLocation::recovery, state, parameters);
     const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
     LamsSolution<S> solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
-    if (limit_to_saturation(e, S(1.0), solution.temperature, flags))
+    NoQualityFlags provisional;  // `air` marks a limited humidity of the results
+    if (limit_to_saturation(e, S(1.0), solution.temperature, provisional))
       solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     const S found =
         finite_or_missing(plausible_or_missing(Quantity::lams_static_defect, solution.static_defect));

@@ -176,20 +176,20 @@ struct LamsStaticDefect {
   }
 };
 
-/// True if the laser has its lock: its delta-p differs from delta-p of the model, or from zero if the model
-/// has no delta-p, by at most three tenths of the dynamic pressure (`max_lams_departure`), which is more than
-/// any static defect. False if one of them is missing.
+/// True if the laser has its lock: its delta-p differs from delta-p of the model, or from zero, by at most
+/// three tenths of the dynamic pressure (`max_lams_departure`), which is more than any static defect. The
+/// model may be wrong, as with an iced port; at a low dynamic pressure a true defect may exceed the limit.
+/// False if the laser has no delta-p.
 template <class S>
 auto has_laser_lock(const State<S>& state) {
-  const S& defect = state[Quantity::static_defect];
-  const S departure = state[Quantity::lams_static_defect] - select(is_missing(defect), S(0.0), defect);
+  const S& defect = state[Quantity::lams_static_defect];
+  const S departure = defect - state[Quantity::static_defect];
   const S limit = S(2.0 * max_lams_departure) * state[Quantity::port_dynamic_pressure];
-  return departure <= limit && departure >= -limit;
+  return (departure <= limit && departure >= -limit) || (defect <= limit && defect >= -limit);
 }
 
 /// Corrected static and dynamic pressure, hPa: `Chain::correct`, with delta-p of the model, or with that of
-/// LAMS if it is valid; the quality bit `corrected_with_lams` marks the latter. Without lock of the laser
-/// (`has_laser_lock`) the model corrects, with the bit `lams_missing`.
+/// LAMS if the laser has its lock (`has_laser_lock`); the quality bit `corrected_with_lams` marks the latter.
 struct CorrectedPressures {
   static Quantities reads(const Correction& correction) {
     Quantities read{Quantity::port_static_pressure, Quantity::port_dynamic_pressure, Quantity::static_defect};
@@ -204,10 +204,9 @@ struct CorrectedPressures {
   static void compute(const Correction& correction, State<S>& state, const P*, Flags& flags) {
     S defect = state[Quantity::static_defect];
     if (correction.with == CorrectWith::lams) {
-      const auto valid = has_laser_lock(state);
-      flags.set(valid, Quality::corrected_with_lams);
-      flags.set(!valid, Quality::lams_missing);
-      defect = select(valid, state[Quantity::lams_static_defect], defect);
+      const auto has_lock = has_laser_lock(state);
+      flags.set(has_lock, Quality::corrected_with_lams);
+      defect = select(has_lock, state[Quantity::lams_static_defect], defect);
     }
     correction.chain.correct(state, defect, flags);
   }
@@ -233,17 +232,15 @@ struct AirState {
   }
 };
 
-/// Temperature (K) and dynamic pressure (hPa) from LAMS and the corrected pressures: `Chain::lams_air`. If
-/// LAMS is to correct the pressures, NaN without lock.
+/// Temperature (K) and dynamic pressure (hPa) from LAMS and the corrected pressures: `Chain::lams_air`. NaN,
+/// with the bit `lams_missing`, without lock (`has_laser_lock`). Without a thermometer the lock is unknown;
+/// the temperature, which does not need one, is then kept.
 struct LamsAir {
   static Quantities reads(const Correction& correction) {
-    Quantities read{Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::humidity,
-                    Quantity::ambient_temperature};
-    if (correction.with == CorrectWith::lams) {
-      read = joined(
-          {read, {Quantity::port_dynamic_pressure, Quantity::static_defect, Quantity::lams_static_defect}});
-    }
-    return joined({read, read_of_beam(correction.chain)});
+    return joined({{Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::humidity,
+                    Quantity::ambient_temperature, Quantity::port_dynamic_pressure, Quantity::static_defect,
+                    Quantity::lams_static_defect},
+                   read_of_beam(correction.chain)});
   }
   static Quantities writes(const Correction& correction) {
     if (!correction.chain.has_lams()) return {};
@@ -253,10 +250,13 @@ struct LamsAir {
   template <class S, class P, class Flags>
   static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
     correction.chain.lams_air(state, parameters, flags);
-    if (correction.with != CorrectWith::lams) return;
     const auto has_lock = has_laser_lock(state);
-    for (const Quantity quantity : {Quantity::lams_temperature, Quantity::lams_dynamic_pressure})
-      state[quantity] = select(has_lock, state[quantity], missing<S>());
+    flags.set(!has_lock, Quality::lams_missing);
+    S& temperature = state[Quantity::lams_temperature];
+    temperature =
+        select(has_lock || is_missing(state[Quantity::lams_static_defect]), temperature, missing<S>());
+    S& pressure = state[Quantity::lams_dynamic_pressure];
+    pressure = select(has_lock, pressure, missing<S>());
   }
 };
 
