@@ -82,7 +82,9 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
      "delta-p too large, as on the ramp: no delta-p",
-     "delta-p above the dynamic pressure, or below its negative, as on the ramp: no delta-p"},
+     "absolute delta-p above the dynamic pressure, as on the ramp, or above six tenths of it in flight (20 "
+     "hPa "
+     "or more): no delta-p"},
     {Quality::filter_window_incomplete, "filter_window_incomplete", "no filtered LAMS temperature",
      "filter window incomplete, or its result is outside the plausible range: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow", "too slow, as on the ramp: no Mach number, no airspeed",

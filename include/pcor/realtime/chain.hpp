@@ -15,6 +15,9 @@
 
 namespace pcor {
 
+/// Dynamic pressure, hPa, from which an aircraft flies: 57 m/s at sea level.
+inline constexpr double min_flight_pressure = 20.0;
+
 /// Inverts the measurement, stage by stage, from recorded values to free air, for one model.
 ///
 ///     measure -> static_defect -> correct -> air -> LAMS temperature and dynamic pressure
@@ -90,7 +93,9 @@ class Chain : public BoundModel {
   /// (no airflow), unless a taper, which ends in zero, is used; above Mach 1 (`max_dynamic_ratio`); and if
   /// the absolute defect exceeds the dynamic pressure: above it the corrected dynamic pressure would be
   /// negative; below its negative the port error would be half of the corrected one, ten times that of static
-  /// ports.
+  /// ports. In flight (`min_flight_pressure`) six tenths of the dynamic pressure are the limit, twice that of
+  /// the laser (`max_lams_departure`): no static port has such an error, so an input of the law is wrong. All
+  /// these set `defect_exceeds_dynamic_pressure`, not `outside_domain`, which keeps the value.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
@@ -116,9 +121,10 @@ class Chain : public BoundModel {
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
     }
-    const auto exceeds = possible && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
-    flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
-    defect = select(exceeds, missing<R>(), defect);
+    const S largest = select(q >= S(min_flight_pressure), S(S(4.0 * max_lams_departure) * q), q);
+    const auto is_too_large = possible && q > S(0.0) && exceeds(defect, R(largest));
+    flags.set(is_too_large, Quality::defect_exceeds_dynamic_pressure);
+    defect = select(is_too_large, missing<R>(), defect);
     const auto enough = is_tapered ? possible && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
   }
@@ -193,9 +199,8 @@ class Chain : public BoundModel {
       solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     const S found =
         finite_or_missing(plausible_or_missing(Quantity::lams_static_defect, solution.static_defect));
-    const auto exceeds = exceeds_dynamic_pressure(found, q);
     const auto valid =
-        p >= S(min_static_pressure) && is_subsonic(p, q) && is_flowing(q) && v > S(0.0) && !exceeds;
+        p >= S(min_static_pressure) && is_subsonic(p, q) && is_flowing(q) && v > S(0.0) && !exceeds(found, q);
     const S defect = select(valid, found, missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
@@ -405,8 +410,8 @@ class Chain : public BoundModel {
   }
 
   template <class S>
-  static auto exceeds_dynamic_pressure(const S& defect, const S& q) {
-    return defect > q || defect < -q;
+  static auto exceeds(const S& defect, const S& largest) {
+    return defect > largest || defect < -largest;
   }
 
   template <class R, class S>
