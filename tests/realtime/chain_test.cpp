@@ -297,6 +297,20 @@ TEST(Policy, DomainFlagsEachEndAndKeepsValues) {
   }
 }
 
+// Nobody knows whether the law holds there.
+TEST(Policy, UnknownDomainQuantityIsNotInside) {
+  Model model = truth.model();
+  model.domain = {{"altitude", 0.0, 5000.0}};
+  for (const auto& [altitude, outside] : {std::pair{3000.0, false}, {6000.0, true}, {missing, true}}) {
+    const Recorded recorded = with(truth.recorded(), Quantity::altitude, altitude);
+    const Chain chain = build(model, recorded);
+    const Sample s = fly(chain, recorded);
+    EXPECT_EQ(s.has(Quality::outside_domain), outside) << altitude;
+    EXPECT_EQ(chain.is_outside_domain(s.state), outside) << altitude;
+    EXPECT_NEAR(s[Quantity::static_defect], truth.defect(), 1e-11);
+  }
+}
+
 TEST(Air, HumidityIsNotAboveSaturation) {
   const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, 8.0));
   EXPECT_TRUE(s.has(Quality::humidity_limited));

@@ -74,10 +74,11 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law",
      "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "outside the domain of the law, or flaps extended",
-     "an input lies outside the domain of the law, or the flaps are extended: extrapolated"},
+     "an input lies outside the domain of the law, a quantity of the domain is missing, or the flaps are "
+     "extended: extrapolated"},
     {Quality::after_gap, "after_gap", "near a gap: too few neighbours for rates of change",
-     "near a gap: effects of rates of change have too few neighbours; in real time also the first sample "
-     "after a gap"},
+     "near a gap, or missing inputs of an airspeed: effects of rates of change have too few neighbours; in "
+     "real time also the first sample after a gap"},
     {Quality::corrected_with_lams, "corrected_with_lams", "corrected with LAMS, not with the model",
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",

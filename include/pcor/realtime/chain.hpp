@@ -109,6 +109,7 @@ class Chain : public BoundModel {
     for (const Range& range : domain_) {
       const S& value = state[range.quantity];
       flags.set(value < S(range.lower) || value > S(range.upper), Quality::outside_domain);
+      flags.set(flowing && is_missing(value) && !is_missing(defect), Quality::outside_domain);
     }
     if (watches_flaps_) flags.set(state[Quantity::flaps] > S(flaps_in), Quality::outside_domain);
     if (has_minimum()) {
@@ -129,13 +130,14 @@ class Chain : public BoundModel {
     return select(enough, defect, missing<R>());
   }
 
-  /// True if a quantity is outside the domain of the law, or the flaps are extended without an effect that
-  /// reads them, so that its uncertainty does not apply. The envelope of a surface does not count.
+  /// True if a quantity is outside the domain of the law, or missing, or the flaps are extended without an
+  /// effect that reads them, so that its uncertainty does not apply. The envelope of a surface does not
+  /// count.
   bool is_outside_domain(const State<double>& state) const {
     if (watches_flaps_ && state[Quantity::flaps] > flaps_in) return true;
     return std::any_of(domain_.begin(), domain_.end(), [&state](const Range& range) {
       const double value = state[range.quantity];
-      return !range.is_of_surface && (value < range.lower || value > range.upper);
+      return !range.is_of_surface && !(value >= range.lower && value <= range.upper);
     });
   }
 
