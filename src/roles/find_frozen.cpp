@@ -25,17 +25,22 @@ constexpr double noisy = 3.0;                // second difference, in steps of r
 constexpr std::size_t noise_window = 300;    // samples on either side
 constexpr std::size_t max_listed = 3;        // segments in a text
 
-/// Runs of samples with one value.
-std::vector<Segment> runs_of(const std::vector<double>& values, const std::vector<bool>& used) {
-  std::vector<Segment> runs;
+/// Consecutive equal values, with missing ones between them.
+struct Run {
+  Segment segment;
+  std::size_t length = 0;  ///< number of values that are not missing
+};
+
+std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<bool>& used) {
+  std::vector<Run> runs;
   double last = nan;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = used[i] ? values[i] : nan;
-    if (!std::isnan(value)) {
-      if (value != last) runs.push_back({i, 0});
-      ++runs.back().count;
-    }
-    last = value;
+    if (!used[i]) last = nan;
+    if (!used[i] || std::isnan(values[i])) continue;
+    if (values[i] != last) runs.push_back({{i, 0}});
+    last = values[i];
+    runs.back().segment.count = i + 1 - runs.back().segment.first;
+    ++runs.back().length;
   }
   return runs;
 }
@@ -70,12 +75,12 @@ bool is_noisy_around(const std::vector<double>& values, const Segment& run, doub
 }
 
 /// Quantile of run lengths, each run weighted by its number of samples. @param part 0 to 1
-double length_quantile(const std::vector<Segment>& runs, double part) {
+double length_quantile(const std::vector<Run>& runs, double part) {
   std::vector<std::size_t> lengths;
   std::size_t samples = 0;
-  for (const Segment& run : runs) {
-    lengths.push_back(run.count);
-    samples += run.count;
+  for (const Run& run : runs) {
+    lengths.push_back(run.length);
+    samples += run.length;
   }
   std::sort(lengths.begin(), lengths.end());
   double within = 0.0;
@@ -87,11 +92,11 @@ double length_quantile(const std::vector<Segment>& runs, double part) {
 }
 
 /// Mean length of the neighbouring runs, without the longest ones.
-double mean_length_near(const std::vector<Segment>& runs, std::size_t run) {
+double mean_length_near(const std::vector<Run>& runs, std::size_t run) {
   std::vector<std::size_t> lengths;
   const std::size_t end = std::min(run + neighbours + 1, runs.size());
   for (std::size_t i = run - std::min(run, neighbours); i < end; ++i) {
-    if (i != run) lengths.push_back(runs[i].count);
+    if (i != run) lengths.push_back(runs[i].length);
   }
   std::sort(lengths.begin(), lengths.end());
   lengths.resize(lengths.size() - std::min(longest_excluded, lengths.size() - 1));
@@ -104,22 +109,28 @@ double mean_length_near(const std::vector<Segment>& runs, std::size_t run) {
 
 std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies) {
-  const std::vector<Segment> runs = runs_of(values, used);
-  const auto same = [&](const Segment& run) { return values[run.first] == values[runs.front().first]; };
-  if (always_varies && !runs.empty() && std::all_of(runs.begin(), runs.end(), same)) return runs;
+  const std::vector<Run> runs = runs_of(values, used);
+  std::vector<Segment> frozen;
+  const auto same = [&](const Run& run) {
+    return values[run.segment.first] == values[runs.front().segment.first];
+  };
+  if (always_varies && std::all_of(runs.begin(), runs.end(), same)) {
+    for (const Run& run : runs) frozen.push_back(run.segment);
+    return frozen;
+  }
   if (runs.size() < min_runs) return {};
-  const auto is_long = [](const Segment& run) { return run.count >= min_samples; };
+  const auto is_long = [](const Run& run) { return run.length >= min_samples; };
   if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
   const double resolution = smallest_step(values);
   const double median_length = length_quantile(runs, 0.5);
   const double length_90th = length_quantile(runs, 0.9);
-  std::vector<Segment> frozen;
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Segment& segment = runs[i].segment;
     if (!is_long(runs[i])) continue;
-    const auto length = static_cast<double>(runs[i].count);
-    const double minimum = is_noisy_around(values, runs[i], resolution) ? min_over_median * median_length
+    const auto length = static_cast<double>(runs[i].length);
+    const double minimum = is_noisy_around(values, segment, resolution) ? min_over_median * median_length
                                                                         : min_over_90th * length_90th;
-    if (length >= minimum && length >= min_over_near * mean_length_near(runs, i)) frozen.push_back(runs[i]);
+    if (length >= minimum && length >= min_over_near * mean_length_near(runs, i)) frozen.push_back(segment);
   }
   return frozen;
 }

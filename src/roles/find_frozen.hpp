@@ -18,7 +18,8 @@ namespace pcor::internal {
 /// altitude in whole feet are not reported, and for a coarse sensor only segments shorter than a tenth of the
 /// flight are found.
 ///
-/// @param values NaN where missing @param used true for samples that are evaluated
+/// @param values NaN where missing, which does not end a run of one value
+/// @param used true for samples that are evaluated
 /// @param always_varies one value from beginning to end is frozen, too
 std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies = false);

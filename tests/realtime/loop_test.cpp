@@ -693,10 +693,10 @@ TEST(LoopInterval, FlagsTheDelayOfTheFilter) {
   }
 }
 
-/// Noisy flight at 25 Hz, in steps of `resolution`, in which one role is frozen for some time: returns the
-/// samples with the bit.
+/// Noisy flight at 25 Hz, in steps of `resolution`, in which one role is frozen for some time, and every
+/// `dropout`-th of its values is missing: returns the samples with the bit.
 std::vector<bool> told_frozen(Quantity role, double noise, double resolution, std::size_t from,
-                              std::size_t to) {
+                              std::size_t to, std::size_t dropout = 0) {
   const Sample flown{{Quantity::static_pressure, 700.0},
                      {Quantity::dynamic_pressure, 60.0},
                      {Quantity::recovery_temperature, 280.0},
@@ -719,6 +719,7 @@ std::vector<bool> told_frozen(Quantity role, double noise, double resolution, st
       if (i == from) held = sample[role];
       sample[role] = held;
     }
+    if (dropout > 0 && i % dropout == 0) sample[role] = missing;
     run(loop, sample, 0.04 * static_cast<double>(i));
     told.push_back(loop.quality().has(Quality::sensor_frozen));
   }
@@ -743,6 +744,17 @@ TEST(LoopFrozen, CoarseSensorIsFlaggedAfterFiveMinutes) {
     }
   }
   EXPECT_TRUE(told[14000]);
+}
+
+// A missing value neither ends nor extends a run of one value, also that of the dynamic pressure, without
+// which it is unknown whether the aircraft flies.
+TEST(LoopFrozen, DropoutsDoNotRestartTheSearch) {
+  for (const Quantity role : {Quantity::recovery_temperature, Quantity::dynamic_pressure}) {
+    const std::vector<bool> told = told_frozen(role, 0.05, 0.001, 5000, 9000, 19);
+    for (std::size_t i = 0; i < told.size(); ++i)  // one of the first 20 samples is missing
+      ASSERT_EQ(told[i], i >= 5000 + 20 && i < 9000 && i % 19 != 0)
+          << i << " of " << pcor::info_of(role).name;
+  }
 }
 
 TEST(LoopFrozen, GroundSamplesSetNoBit) {

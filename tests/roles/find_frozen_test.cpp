@@ -107,6 +107,14 @@ TEST(Frozen, ExcludedAndMissingSamplesAreNotFrozen) {
   EXPECT_THAT(find_frozen(values, flying), IsEmpty()) << "what is missing is not frozen";
 }
 
+// Telemetry with dropouts: pieces of 18 samples are one run.
+TEST(Frozen, DropoutsDoNotEndARun) {
+  Series values = recorded({}, 1);
+  freeze(values, 5000, 600);
+  for (std::size_t i = 0; i < values.size(); i += 19) values[i] = std::nan("");
+  EXPECT_EQ(found(values), Spans({{5000, 600}}));
+}
+
 }  // namespace
 
 TEST(Frozen, ConstantFlightIsFrozenOnlyForVaryingSensors) {

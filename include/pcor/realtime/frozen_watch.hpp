@@ -37,8 +37,8 @@ class SteadyValue {
 
   void reset() noexcept { *this = SteadyValue(longest_); }
 
-  /// A sample that does not count.
-  void skip() noexcept {
+  /// Ends the run of one value, as on the ground.
+  void end() noexcept {
     last_ = missing<double>();
     length_ = 0;
   }
@@ -99,8 +99,8 @@ class SteadyValue {
   double is_bent_ = 0.0;  // the part of values whose second difference is large
 };
 
-/// Detects inputs of a chain that are frozen in flight, among those that always vary. Does not allocate after
-/// construction.
+/// Detects inputs of a chain that are frozen in flight, among those that always vary. A missing value does
+/// not count: the values before and after it are neighbours. Does not allocate after construction.
 class FrozenWatch {
  public:
   /// @param rate samples in a second
@@ -119,15 +119,17 @@ class FrozenWatch {
 
   /// True if one of them is frozen at this sample.
   bool operator()(const State<double>& state) noexcept {
-    constexpr double min_dynamic_pressure = 20.0;  // hPa, 57 m/s at sea level
-    const bool flies = state[Quantity::dynamic_pressure] >= min_dynamic_pressure;
+    const auto value_of = [&state](Quantity quantity) {
+      return plausible_or_missing(quantity, state[quantity]);
+    };
+    const double q = value_of(Quantity::dynamic_pressure);
     bool frozen = false;
     for (Sensor& sensor : sensors_) {
-      const double value = state[sensor.quantity];
-      if (flies && !is_missing(value)) {
+      const double value = value_of(sensor.quantity);
+      if (q < min_flight_pressure) {
+        sensor.value.end();
+      } else if (!is_missing(q + value)) {
         frozen = sensor.value(value) || frozen;
-      } else {
-        sensor.value.skip();
       }
     }
     return frozen;
