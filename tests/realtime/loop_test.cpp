@@ -778,6 +778,7 @@ TEST(LoopGap, ResetRestartsTheState) {
   for (int i = 0; i < 10; ++i) run(loop, recorded, i);
   EXPECT_EQ(loop.state()[Quantity::corrected_static_pressure], 700.0);
   loop.reset();
+  EXPECT_THAT(loop.last_time(), IsNan());
   run(loop, recorded, 10.0);
   EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
 }
@@ -805,9 +806,9 @@ TEST(LoopGap, RestartSetsABit) {
   EXPECT_EQ(own_bits(loop), bits({Quality::after_gap}));
   run(loop, level, 51.0);
   EXPECT_EQ(own_bits(loop), 0U);
-  for (const double time : {51.0, 50.0, missing, missing}) {
+  for (const double time : {51.0, 50.0, infinity, 52.0, -infinity, 53.0, missing, missing}) {
     run(loop, level, time);
-    EXPECT_TRUE(loop.quality().has(Quality::uneven_samples)) << time;
+    EXPECT_EQ(own_bits(loop), bits({Quality::uneven_samples})) << time;
   }
   loop.reset();
   run(loop, level, 100.0);

@@ -128,14 +128,17 @@ class Loop {
   /// Delay of the results of a sample, in runs: 0 for a model that reads no rate of change.
   std::size_t delay() const noexcept { return look_ahead_ ? look_ahead_->delay() : 0; }
 
-  /// The time of the sample that was run last, s; NaN before the first.
+  /// The time of the sample that was run last, s; NaN before the first and after `reset`.
   double last_time() const noexcept { return previous_time_; }
 
   /// Disables the detection of frozen sensors, for hosts that detect them from the whole flight.
   void do_not_watch_sensors() noexcept { frozen_.reset(); }
 
   /// Clears all earlier samples.
-  void reset() noexcept { started_ = false; }
+  void reset() noexcept {
+    started_ = false;
+    previous_time_ = missing<double>();
+  }
 
   /// True if a sample at `time` resets all functors: the first one, one after a gap, and one whose time does
   /// not increase.
@@ -146,15 +149,16 @@ class Loop {
 
   /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record. A
   /// sample that starts again (not the first, nor the first after `reset`) has the bit `after_gap`, or
-  /// `uneven_samples` if its time does not increase or is not finite; with a delay it has
-  /// `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and frozen
+  /// `uneven_samples` if its time does not increase, or it or the time before is not finite; with a delay it
+  /// has `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and frozen
   /// sensors are not found.
   void run(double time) noexcept {
     quality_.clear();
-    auto step = missing<double>();
+    double step = time - previous_time_;
     if (starts_anew(time)) {
       if (!look_ahead_ && (started_ || !is_finite(time)))
-        quality_.set(time - previous_time_ > max_step_ ? Quality::after_gap : Quality::uneven_samples);
+        quality_.set(is_finite(step) && step > max_step_ ? Quality::after_gap : Quality::uneven_samples);
+      step = missing<double>();
       for (const auto& functor : functors_) functor->reset();
       if (look_ahead_) look_ahead_->reset();
       if (wetness_) wetness_->reset();
@@ -163,9 +167,8 @@ class Loop {
       filter_clock_.reset();
       filter_time_ = missing<double>();
       uneven_ = 0;
-    } else {
-      step = time - previous_time_;
-      if (clock_.is_uneven(step) && look_ahead_) uneven_ = look_ahead_->window();
+    } else if (clock_.is_uneven(step) && look_ahead_) {
+      uneven_ = look_ahead_->window();
     }
     started_ = true;
     previous_time_ = time;
