@@ -474,6 +474,21 @@ TEST(LoopOrder, WriterOfAQuantityWithARateIsRefused) {
   EXPECT_THAT(error, HasSubstr("dynamic_pressure"));
 }
 
+// The rate of the airspeed uses all recorded quantities.
+TEST(LoopOrder, WriterOfAnInputOfTheAirspeedWithARateIsRefused) {
+  Model model = c130();
+  model.effects.push_back({"clock-skew", {2.0}});
+  const auto error_of_writer = [&](Quantity quantity) {
+    Loop loop = build(model, level, 1.0);
+    loop.add(own({quantity}, {quantity}, [quantity](State<double>& state) { state[quantity] *= 1.5; }));
+    std::string error;
+    return loop.order(&error) ? std::string() : error;
+  };
+  EXPECT_THAT(error_of_writer(Quantity::dynamic_pressure), HasSubstr("'dynamic_pressure'"));
+  EXPECT_THAT(error_of_writer(Quantity::vapor_pressure), HasSubstr("'vapor_pressure'"));
+  EXPECT_EQ(error_of_writer(Quantity::liquid_water), "") << "no input of this model";
+}
+
 TEST(Loop, ImpossibleClockSkewIsRefused) {
   for (const auto& [seconds, text] : std::initializer_list<std::pair<double, const char*>>{
            {missing, "nan s"}, {infinity, "inf s"}, {60.00001, "60.00001 s"}, {-1e300, "-1e+300 s"}}) {

@@ -69,10 +69,12 @@ class LookAhead {
   /// Number of samples in the window of a rate.
   std::size_t window() const { return before_ + 1 + delay_; }
 
-  /// True if the rate of change of the quantity is computed.
+  /// True if a rate of change depends on the quantity; that of the airspeed depends on every recorded one.
   bool reads(Quantity quantity) const {
-    return std::any_of(changes_.begin(), changes_.end(),
-                       [quantity](const Change& change) { return change.of == quantity; });
+    return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
+      return change.of == quantity ||
+             (change.of == Quantity::corrected_airspeed && chain_->recorded(quantity));
+    });
   }
 
   /// Standard deviation of a rate of change, per second, for white noise of standard deviation 1 of its

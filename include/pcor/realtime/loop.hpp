@@ -103,8 +103,8 @@ class Loop {
 
   /// Orders the functors. Returns false without changes if one reads or writes a variable that was not added,
   /// if two functors write one quantity or depend on each other, or if one writes a quantity whose rate of
-  /// change the model reads, or the liquid water of `temp-wetting`, because these are read before functors
-  /// run; `error` names them.
+  /// change the model reads (with `clock-skew` every recorded input), or the liquid water of `temp-wetting`,
+  /// because these are read before functors run; `error` names them.
   bool order(std::string* error);
 
   /// True if some functor writes the quantity.
