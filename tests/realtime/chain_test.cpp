@@ -330,6 +330,20 @@ TEST(Air, SupersaturationOverIceIsNotLimited) {
   EXPECT_NEAR(s[Quantity::humidity] * cold.p, cold.e, 1e-12);
 }
 
+// A recovery factor by the logarithm of Mach number 0.
+TEST(Air, MissingSolutionSetsTheBitOfTheTemperature) {
+  Model model;
+  model.effects = {catalogued("static-constant", {0.001})};
+  model.recovery = {{0.988, 0.053, 0.090, 0.091}};
+  model.policy.min_dynamic_pressure = 0.0;
+  const Sample s = fly(model, {{Quantity::static_pressure, 500.0},
+                               {Quantity::dynamic_pressure, 0.5},
+                               {Quantity::recovery_temperature, 280.0}});
+  ASSERT_EQ(s[Quantity::corrected_dynamic_pressure], 0.0);
+  EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
+  EXPECT_TRUE(s.has(Quality::temperature_missing));
+}
+
 TEST(Air, NegativeHumidityIsDry) {
   const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, -0.1));
   EXPECT_EQ(s[Quantity::humidity], 0.0);
@@ -1038,6 +1052,20 @@ TEST(Ramp, AirspeedNeedsAMinimumDynamicPressure) {
               std::sqrt(2 * 2.01 / p * 287.05 * s[Quantity::ambient_temperature]), 0.03);
   model.policy.min_dynamic_pressure = 0.0;
   EXPECT_FALSE(std::isnan(at(0.1)[Quantity::corrected_airspeed]));
+}
+
+// A taper has a delta-p below the minimum dynamic pressure; the corrected one decides on the airspeed.
+TEST(Ramp, CorrectedPressureDecidesOnTheAirflowUnderATaper) {
+  Model model = truth.model();
+  model.policy.taper_below = 2.0;
+  model.policy.taper_power = 1.0;
+  const Recorded recorded = with(truth.recorded(), Quantity::dynamic_pressure, 1.9);
+  for (const auto& [a0, flows] : {std::pair{-0.0005, true}, {0.0, false}}) {
+    model.effects = {catalogued("static-constant", {a0})};
+    const Sample s = fly(model, recorded);
+    EXPECT_EQ(s.has(Quality::no_airflow), !flows) << a0;
+    EXPECT_EQ(std::isnan(s[Quantity::corrected_airspeed]), !flows) << a0;
+  }
 }
 
 // Models that Chain::build refuses, and its messages.

@@ -907,6 +907,33 @@ TEST(LoopFunctors, CanRunBetweenModelStages) {
   }
 }
 
+// Of a functor as of the host.
+TEST(LoopFunctors, ImplausibleTemperatureIsMissing) {
+  const Sample recorded{{Quantity::static_pressure, 700.0},
+                        {Quantity::dynamic_pressure, 67.6},
+                        {Quantity::ambient_temperature, 274.0}};
+  for (const double temperature : {-5000.0, 5000.0}) {
+    Loop loop = build(Model{}, recorded, 1.0);
+    loop.add(own({Quantity::corrected_static_pressure}, {Quantity::ambient_temperature},
+                 [=](State<double>& state) { state[Quantity::ambient_temperature] = temperature; }));
+    std::string error;
+    ASSERT_TRUE(loop.order(&error)) << error;
+    run(loop, recorded, 0.0);
+    EXPECT_THAT(loop.state()[Quantity::ambient_temperature], IsNan());
+    EXPECT_THAT(loop.state()[Quantity::corrected_airspeed], IsNan());
+    EXPECT_TRUE(loop.quality().has(Quality::temperature_missing));
+  }
+}
+
+TEST(Loop, AirspeedNeedsARecordedTemperature) {
+  const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
+  Loop loop = build(Model{}, recorded, 1.0);
+  loop.state()[Quantity::ambient_temperature] = 280.0;
+  run(loop, recorded, 0.0);
+  EXPECT_THAT(loop.state()[Quantity::corrected_airspeed], IsNan());
+  EXPECT_EQ(loop.state()[Quantity::ambient_temperature], 280.0) << "of the host";
+}
+
 TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   Loop with_model = build(c130(), level, 1.0);
   Loop with_lams = build(c130(), level, 1.0, CorrectWith::lams);

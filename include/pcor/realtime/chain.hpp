@@ -56,7 +56,6 @@ class Chain : public BoundModel {
     flags.set(p < S(min_static_pressure), Quality::impossible_static_pressure);
     flags.set(q <= S(0.0) || (p >= S(min_static_pressure) && !is_subsonic(p, q)),
               Quality::impossible_dynamic_pressure);
-    flags.set(q < S(policy_.min_dynamic_pressure), Quality::no_airflow);
 
     if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
     if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
@@ -162,25 +161,33 @@ class Chain : public BoundModel {
     const S p = state[Quantity::corrected_static_pressure];
     const S delta = sum<S>(EffectLocation::recovery, state, parameters);
     const S thermometer = recovery_temperature_of(state, parameters);
+    const auto temperature = [&] {
+      return has_temperature() ? state[Quantity::ambient_temperature] : missing<S>();
+    };
     if (has_temperature()) {
       const S& ambient = state[Quantity::ambient_temperature];
+      // A functor may have written it after `measure`.
+      if (!derives_temperature()) drop_implausible(Quantity::ambient_temperature, state);
       flags.set(is_missing(derives_temperature() ? thermometer + delta : ambient),
                 Quality::temperature_missing);
       flags.set(is_missing(delta), Quality::effect_input_missing);
     }
     S humidity = recorded_humidity(state, parameters, p, flags);
     AirOf<S> air = solve_air(state, parameters, humidity, thermometer, delta, flags);
-    if (limit_to_saturation(humidity, p, state[Quantity::ambient_temperature], flags))
+    if (limit_to_saturation(humidity, p, temperature(), flags))
       air = solve_air(state, parameters, humidity, thermometer, delta, flags);
-    const auto still = state[Quantity::corrected_dynamic_pressure] < S(policy_.min_dynamic_pressure);
-    flags.set(still, Quality::no_airflow);
+    const S least(policy_.min_dynamic_pressure);
+    const S& q = state[Quantity::corrected_dynamic_pressure];
+    const auto still = q < least;
+    // Without a corrected pressure the measured one decides.
+    flags.set(still || (is_missing(q) && state[Quantity::dynamic_pressure] < least), Quality::no_airflow);
     S& mach = state[Quantity::corrected_mach];
     put(Quantity::corrected_mach, select(still, missing<S>(), mach), state, flags,
         Quality::impossible_dynamic_pressure);
     state[Quantity::humidity] = humidity;
     state[Quantity::corrected_airspeed] =
         select(is_missing(mach), missing<S>(),
-               true_airspeed_from_heating(air.heating, state[Quantity::ambient_temperature], air.constants));
+               true_airspeed_from_heating(air.heating, temperature(), air.constants));
   }
 
   /// Delta-p from LAMS at this sample, hPa, by the approach of the model. NaN if the laser or another input
@@ -536,6 +543,7 @@ class Chain : public BoundModel {
               thermometer, heating,
               S(recovery_.at_square(S(constants.degrees_of_freedom * heating)) + delta)),
           state, flags, Quality::temperature_missing);
+      flags.set(is_missing(ambient) && !is_missing(thermometer + heating), Quality::temperature_missing);
       if (acts(EffectLocation::ambient_temperature)) ambient = calibrated(ambient, state, parameters, flags);
     }
     return {constants, heating};

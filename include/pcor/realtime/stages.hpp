@@ -216,7 +216,8 @@ struct CorrectedPressures {
 /// `Chain::air`.
 struct AirState {
   static Quantities reads(const Correction& correction) {
-    return joined({{Quantity::corrected_static_pressure, Quantity::corrected_dynamic_pressure},
+    return joined({{Quantity::dynamic_pressure, Quantity::corrected_static_pressure,
+                    Quantity::corrected_dynamic_pressure},
                    read_of_air(correction.chain)});
   }
   static Quantities writes(const Correction& correction) {
