@@ -237,6 +237,18 @@ TEST(Loop, UnknownRecordedQuantityIsRefused) {
   }
 }
 
+// A formula of a result would use the number that the host left in the state.
+TEST(Loop, RecordedResultIsRefused) {
+  std::string error;
+  for (const Quantity result : {Quantity::port_static_pressure, Quantity::static_defect,
+                                Quantity::corrected_airspeed, Quantity::height_step}) {
+    std::vector<Quantity> recorded = roles(level);
+    recorded.push_back(result);
+    EXPECT_FALSE(Loop::build(c130(), recorded, 1.0, &error));
+    EXPECT_THAT(error, HasSubstr(std::string(pcor::info_of(result).name)));
+  }
+}
+
 // Numbers that the reader of model files refuses.
 TEST(Loop, ImpossibleNumbersOfTheModelAreRefused) {
   using Change = std::function<void(Model&)>;

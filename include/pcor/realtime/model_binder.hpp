@@ -80,6 +80,11 @@ class ModelBinder {
                         " among the recorded quantities is not a quantity; quantity_named returns "
                         "Quantity::count for an unknown name: correct the name");
       }
+      if (index(quantity) >= index(Quantity::port_static_pressure) && index(quantity) < quantity_count) {
+        return fail(Code::unknown_quantity, "",
+                    quote(info_of(quantity).name) +
+                        " among the recorded quantities is a result of the chain; remove it");
+      }
       bound_.recorded_.set(index(quantity));
     }
     bound_.lams_ = model.lams;
