@@ -534,6 +534,23 @@ TEST(NimbusSystem, ResetRestartsTheState) {
   EXPECT_THAT(table.high("PSXC_R", 0), IsNan());
 }
 
+TEST(NimbusSystem, ResetBetweenLeaderAndEntryCostsOneSample) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, {{"MACHX", {}, Fuselage::fetch<Quantity::corrected_mach>},
+                          {"PCOR", fuselage_inputs, Fuselage::compute},
+                          {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>}});
+  table.compute(0.0, raw_value);
+  Fuselage::reset();
+  Second = 0.0;
+  FeedBack = low_rate_feedback;
+  DERTBL& entry = table.entry("PSXC");
+  entry.compute(&entry);
+  EXPECT_THAT(table.low("PSXC"), IsNan()) << "the leader has not run since";
+  table.compute(1.0, raw_value);
+  EXPECT_FALSE(std::isnan(table.low("PSXC")));
+  EXPECT_THAT(table.low("MACHX"), IsNan()) << "always before the leader";
+}
+
 TEST(NimbusSystem, GivesNanWithoutAnInstalledModel) {
   struct Tag;
   using Empty = NimbusSystem<Host, Tag>;

@@ -166,7 +166,8 @@ class NimbusSystem {
     inputs_ = std::move(bound);
     low_ = {std::move(low), low_rate};
     high_ = {std::move(high), high_rate};
-    reset();
+    run_ = 0;
+    turns_.fill({});
     return true;
   }
 
@@ -186,9 +187,9 @@ class NimbusSystem {
   }
 
   /// Callback of an entry that puts another result of the leader's run. NaN if the leader has not run since
-  /// this entry was last put; permanently NaN if the entry, or another one of the same result, is called
-  /// before the leader's first run, because its values would be those of the previous sample: its dependency
-  /// line lacks the leader.
+  /// the first entry of this result was last put; permanently NaN if the entry, or another one of the same
+  /// result, is called before the leader's first run, because its values would be those of the previous
+  /// sample: its dependency line lacks the leader.
   template <Quantity quantity>
   static void fetch(Entry* entry) {
     Host::put(entry, has_turn(turns_[index(quantity)], entry) ? latest_->state()[quantity] - zero_of(quantity)
@@ -212,8 +213,9 @@ class NimbusSystem {
       if (rate->loop) rate->loop->reset();
       rate->samples = 0;
     }
-    run_ = 0;
-    turns_.fill({});
+    for (Turn& turn : turns_) {
+      if (turn.run != never) turn = {run_, nullptr};
+    }
   }
 
  private:
