@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <pcor/model/plausible.hpp>
 #include <pcor/model/quality.hpp>
 #include <pcor/model/quantity.hpp>
 #include <pcor/model/state.hpp>
@@ -27,6 +28,14 @@ TEST(Quantity, NamesResolveToTheirQuantity) {
   }
   EXPECT_EQ(quantity_named("PSFD"), Quantity::count);
   EXPECT_EQ(quantity_named(""), Quantity::count);
+}
+
+// The missing value of NCAR's files is no value of a role, but of the date, in days.
+TEST(Quantity, MissingValueOfFilesIsImplausible) {
+  for (std::size_t i = 0; i < pcor::role_count; ++i) {
+    const auto role = static_cast<Quantity>(i);
+    EXPECT_EQ(pcor::is_implausible(role, -32767.0), role != Quantity::date) << info_of(role).name;
+  }
 }
 
 TEST(Quantity, RolesHaveTheNamesOfTheModelFile) {

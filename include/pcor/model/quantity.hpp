@@ -152,7 +152,7 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
      Quantity::longitudinal_acceleration, -1000.0, 1000.0},
     {"flaps", "percent", "flap position", Quantity::flaps, -1000.0, 1000.0},
     {"engine_torque", "percent", "torque of the engines", Quantity::engine_torque, -10000.0, 10000.0},
-    {"height_above_ground", "m", "height above the ground", Quantity::height_above_ground, -100000, 100000},
+    {"height_above_ground", "m", "height above the ground", Quantity::height_above_ground, -1000, 100000},
     {"liquid_water", "g/m3", "liquid water content", Quantity::liquid_water, -1000.0, 1000.0},
     {"transducer_temperature", "K", "temperature of the pressure transducers",
      Quantity::transducer_temperature, 100.0, 1000.0},
