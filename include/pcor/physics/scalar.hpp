@@ -145,8 +145,9 @@ constexpr double polynomial(double x, const std::array<double, 8>& c) {
 
 /// (1 + part/whole)^exponent - 1, for part/whole above -1.
 ///
-/// For `double` accurate to 1e-15 of the result in the range of flight, below Mach 0.847: two polynomials, by
-/// ln(1 + x) = 2 artanh(x/(2 + x)), faster than two calls of the library.
+/// For `double` and the exponent R/c_p accurate to 1e-15 of the result in the range of flight, below Mach
+/// 0.847; for c_p/R to 4e-15. Two polynomials, by ln(1 + x) = 2 artanh(x/(2 + x)), faster than two calls of
+/// the library.
 template <class S>
 S power_less_one(const S& part, const S& whole, const S& exponent) {
   require_scalar<S>();

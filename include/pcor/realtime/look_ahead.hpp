@@ -94,7 +94,7 @@ class LookAhead {
 
   /// Pushes a sample and returns the one from `delay` samples before, with its rates of change. False, with
   /// all values missing, if there is no such sample yet. The bit `after_gap` marks a rate with too few
-  /// neighbours.
+  /// neighbours, as after a gap or a missing input of the airspeed.
   bool exchange(State<double>& state, QualityFlags& flags) noexcept {
     const std::size_t length = before_ + 1 + delay_;
     for (Change& change : changes_) {

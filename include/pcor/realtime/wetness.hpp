@@ -28,7 +28,7 @@ class Wetness {
   void reset() noexcept { wetness_ = missing<double>(); }
 
   /// @param liquid_water g/m3
-  /// @param step s since the previous sample; NaN: the step of the rate
+  /// @param step s since the previous sample; NaN: the last step, at first that of the rate
   double operator()(double liquid_water, double step = missing<double>()) noexcept {
     constexpr double alike = 1e-6;
     if (std::abs(step - step_) > alike * step_) {
