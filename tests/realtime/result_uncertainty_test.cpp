@@ -478,6 +478,7 @@ TEST(Covariance, InvalidMatrixIsRefused) {
   EXPECT_TRUE(is_covariance({0.0}, 1));
   EXPECT_FALSE(is_covariance({-1.0}, 1));
   EXPECT_FALSE(is_covariance({nan}, 1));
+  EXPECT_FALSE(is_covariance({std::numeric_limits<double>::infinity()}, 1));
   EXPECT_FALSE(is_covariance({1.0, nan, nan, 1.0}, 2));
   EXPECT_FALSE(is_covariance({1.0, 0.9, -0.9, 1.0}, 2)) << "not symmetric";
   EXPECT_FALSE(is_covariance({0.0, 1e-3, 1e-3, 1.0}, 2)) << "what is known exactly varies with nothing";
@@ -489,6 +490,29 @@ TEST(Covariance, InvalidMatrixIsRefused) {
   }
   // A sum of two: its covariance is singular, and written with seven digits.
   EXPECT_TRUE(is_covariance({1.0, 0.0, 0.7071068, 0.0, 1.0, 0.7071068, 0.7071068, 0.7071068, 1.0}, 3));
+}
+
+TEST(Covariance, SquareOfTheRootIsTheMatrix) {
+  const auto error_of_root = [](const std::vector<double>& matrix, std::size_t size) {
+    const auto root = covariance_root(matrix, size);
+    EXPECT_TRUE(root);
+    double error = 0.0;
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j) {
+        double sum = 0.0;
+        for (const std::vector<double>& change : *root) sum += change[i] * change[j];
+        const double scale = std::sqrt(matrix[i * size + i] * matrix[j * size + j]);
+        error = std::max(error, std::abs(sum - matrix[i * size + j]) / scale);
+      }
+    }
+    return error;
+  };
+  // Rounding of sums of three products.
+  EXPECT_LT(error_of_root({4.0, 2e-3, -1e3, 2e-3, 9e-6, 0.1, -1e3, 0.1, 1e6}, 3), 1e-15);
+  // One error three times: its rounded correlations are of no covariance, so they return within the rounding.
+  const double c = 1.0 - 1e-9, r = 1.0 - 5e-7;
+  for (const auto& [a, b, d] : {std::array{r, 1.0, c}, {1.0, r, c}, {c, r, 1.0}, {r, c, 1.0}, {1.0, c, r}})
+    EXPECT_LT(error_of_root({1.0, a, b, a, 1.0, d, b, d, 1.0}, 3), 1e-6);
 }
 
 }  // namespace

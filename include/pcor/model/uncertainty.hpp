@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -51,19 +52,22 @@ struct ModelUncertainty {
   }
 };
 
-/// True if the `matrix` of `size` rows, row by row, is a covariance: finite, symmetric, and no linear
-/// combination has a negative variance. Correlations may have rounding errors of 1e-6, as from six digits.
-inline bool is_covariance(std::vector<double> matrix, std::size_t size) {
+/// Root of a covariance: vectors v of `size` elements with sum v_i v_j = C_ij, each a change of all variables
+/// by independent errors of one standard deviation (pivoted Cholesky). nullopt if the `matrix` of `size`
+/// rows, row by row, is not a covariance: finite, symmetric, and no linear combination has a negative
+/// variance. Correlations may have rounding errors of 1e-6, as from six digits.
+inline std::optional<std::vector<std::vector<double>>> covariance_root(std::vector<double> matrix,
+                                                                       std::size_t size) {
   constexpr double rounding = 1e-6;
   const auto at = [&](std::size_t i, std::size_t j) -> double& { return matrix[i * size + j]; };
   std::vector<double> scale(size);
   for (std::size_t i = 0; i < size; ++i) {
-    if (!(at(i, i) >= 0.0)) return false;
+    if (!(is_finite(at(i, i)) && at(i, i) >= 0.0)) return std::nullopt;
     scale[i] = std::sqrt(at(i, i));
   }
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!(std::abs(at(i, j) - at(j, i)) <= rounding * scale[i] * scale[j])) return false;
+      if (!(std::abs(at(i, j) - at(j, i)) <= rounding * scale[i] * scale[j])) return std::nullopt;
     }
   }
   for (std::size_t i = 0; i < size; ++i) {
@@ -72,31 +76,46 @@ inline bool is_covariance(std::vector<double> matrix, std::size_t size) {
       if (product > 0.0) {
         at(i, j) /= product;
       } else if (at(i, j) != 0.0) {
-        return false;
+        return std::nullopt;
       }
     }
   }
   // The conditional covariance for one known variable is also a covariance: pivoted Cholesky, starting with
-  // the variable of the largest variance.
+  // the variable of the largest variance. Those below the rounding errors belong to the root only as
+  // long as no covariance exceeds them.
+  std::vector<std::vector<double>> root;
   std::vector<std::size_t> left(size);
   for (std::size_t i = 0; i < size; ++i) left[i] = i;
+  bool is_checked = false;
   while (!left.empty()) {
     std::sort(left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return at(a, a) < at(b, b); });
     const std::size_t known = left.back();
     const double variance = at(known, known);
-    if (at(left.front(), left.front()) < -rounding) return false;
-    if (variance <= rounding) {
+    const auto all_below = [&](double limit) {
       return std::all_of(left.begin(), left.end(), [&](std::size_t i) {
         return std::all_of(left.begin(), left.end(),
-                           [&](std::size_t j) { return std::abs(at(i, j)) <= 2.0 * rounding; });
+                           [&](std::size_t j) { return std::abs(at(i, j)) <= limit; });
       });
+    };
+    if (!is_checked && at(left.front(), left.front()) < -rounding) return std::nullopt;
+    if (!is_checked && variance <= rounding) {
+      if (!all_below(2.0 * rounding)) return std::nullopt;
+      is_checked = true;
     }
+    if (is_checked && (variance < 1e-12 || !all_below(1.01 * variance))) break;
+    std::vector<double>& change = root.emplace_back(size, 0.0);
+    for (const std::size_t i : left) change[i] = at(i, known) / std::sqrt(variance) * scale[i];
     left.pop_back();
     for (const std::size_t i : left) {
       for (const std::size_t j : left) at(i, j) -= at(i, known) * at(known, j) / variance;
     }
   }
-  return true;
+  return root;
+}
+
+/// True if the `matrix` of `size` rows is a covariance (`covariance_root`).
+inline bool is_covariance(const std::vector<double>& matrix, std::size_t size) {
+  return covariance_root(matrix, size).has_value();
 }
 
 }  // namespace pcor
