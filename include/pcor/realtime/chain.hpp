@@ -100,7 +100,7 @@ class Chain : public BoundModel {
     using R = Promoted<S, P>;
     const S& p = state[Quantity::static_pressure];
     const S& q = state[Quantity::dynamic_pressure];
-    R defect = sum<R>(EffectLocation::static_defect, state, parameters);
+    R defect = sum_at_ports(state, parameters);
     const bool is_tapered = policy_.taper_below > 0.0;
     const auto possible = p >= S(min_static_pressure) && is_subsonic(p, q);
     const auto flowing = possible && (is_tapered ? q > S(0.0) : is_flowing(q));
@@ -266,10 +266,16 @@ class Chain : public BoundModel {
     return location_of(effect) == EffectLocation::static_defect && is_linear(effect, parameter);
   }
 
+  /// Sum of the effects at the static ports, hPa: delta-p before the policy limits it.
+  template <class S, class P>
+  Promoted<S, P> sum_at_ports(const State<S>& state, const P* parameters) const {
+    return sum<Promoted<S, P>>(EffectLocation::static_defect, state, parameters);
+  }
+
   /// Where the policy raises delta-p to its minimum.
   template <class S, class P>
   auto is_at_minimum(const State<S>& state, const P* parameters) const {
-    return sum<S>(EffectLocation::static_defect, state, parameters) < S(policy_.minimum);
+    return sum_at_ports(state, parameters) < Promoted<S, P>(policy_.minimum);
   }
 
   /// Taper factor of the effects at the static ports: 1 without a taper.
@@ -284,50 +290,9 @@ class Chain : public BoundModel {
   double minimum_defect() const { return policy_.minimum; }
   bool has_minimum() const { return policy_.minimum > -std::numeric_limits<double>::infinity(); }
 
-  /// The recovery factor at Mach number `mach`, with the effects that act on it.
-  template <class S, class P>
-  S recovery_factor(const S& mach, const State<S>& state, const P* parameters) const {
-    return recovery_(mach) + sum<S>(EffectLocation::recovery, state, parameters);
-  }
-
-  /// Derivative of the ambient temperature with respect to its value before calibration: 1 without a
-  /// calibration.
-  template <class S, class P>
-  S calibration_slope(const State<S>& state, const P* parameters) const {
-    if (!acts(EffectLocation::ambient_temperature)) return S(1.0);
-    State<S> moved = state;
-    moved[Quantity::ambient_temperature] = state[Quantity::ambient_temperature] + S(0.5);
-    const S above = sum<S>(EffectLocation::ambient_temperature, moved, parameters);
-    moved[Quantity::ambient_temperature] = state[Quantity::ambient_temperature] - S(0.5);
-    return S(1.0) + above - sum<S>(EffectLocation::ambient_temperature, moved, parameters);
-  }
-
   /// Minimum static pressure, hPa: that at 48 km height, far below the resolution of any sensor. Ratios to
   /// smaller pressures are not meaningful.
   static constexpr double min_static_pressure = 1.0;
-
-  /// Adds to a quantity of a state after `measure`, and updates the derived inputs of effects: the ratios and
-  /// the Mach number of the pressures, the ratios of the radome and its flow angles.
-  template <class S>
-  void change(State<S>& state, Quantity quantity, const S& by) const {
-    const S radome = state[Quantity::radome_dynamic_pressure];
-    S attack_ratio(0.0);
-    S sideslip_ratio(0.0);
-    if (quantity == Quantity::attack_ratio) attack_ratio = by;
-    if (quantity == Quantity::attack_differential_pressure) attack_ratio = by / radome;
-    if (quantity == Quantity::sideslip_differential_pressure) sideslip_ratio = by / radome;
-    if (quantity == Quantity::radome_dynamic_pressure) {
-      attack_ratio = -state[Quantity::attack_ratio] * by / (radome + by);
-      sideslip_ratio = -state[Quantity::sideslip_ratio] * by / (radome + by);
-    }
-    if (quantity != Quantity::attack_ratio) state[quantity] = state[quantity] + by;
-    const S p = state[Quantity::static_pressure];
-    const S q = state[Quantity::dynamic_pressure];
-    if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
-    if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
-    turn(state, Quantity::attack_ratio, attack_ratio, Quantity::attack, attack_radome_);
-    turn(state, Quantity::sideslip_ratio, sideslip_ratio, Quantity::sideslip, sideslip_radome_);
-  }
 
  private:
   static constexpr double min_radome_pressure = 1e-6;
@@ -356,18 +321,6 @@ class Chain : public BoundModel {
   template <class S, class P>
   void add(EffectLocation location, Quantity quantity, State<S>& state, const P* parameters) const {
     if (acts(location)) state[quantity] = state[quantity] + sum<S>(location, state, parameters);
-  }
-
-  // Adds to a ratio of the radome, and to the flow angle derived from it.
-  template <class S>
-  void turn(State<S>& state, Quantity ratio, const S& by, Quantity angle,
-            const RadomeCalibration& radome) const {
-    if (!needs(ratio)) return;
-    state[ratio] = state[ratio] + by;
-    if (!derives(angle)) return;
-    S slope(radome.slope);
-    if (radome.needs_mach()) slope = slope + S(radome.slope_mach) * state[Quantity::mach];
-    state[angle] = state[angle] + slope * by;
   }
 
   // Ratios of the radome pressures, and the flow angles derived from them.

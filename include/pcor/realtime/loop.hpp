@@ -187,6 +187,7 @@ class Loop {
     }
     if (frozen_) quality_.set((*frozen_)(state_), Quality::sensor_frozen);
     if (low_pass_ != nullptr) reset_filter_at_uneven_step();
+    if (uncertainty_ != nullptr) uncertainty_->keep_recorded(state_);
     for (const auto& functor : functors_) functor->compute(state_, quality_);
   }
 
@@ -208,8 +209,9 @@ class Loop {
   std::optional<FrozenWatch> frozen_;
   SampleClock clock_;
   SampleClock filter_clock_;
-  std::size_t uneven_ = 0;       // remaining runs whose rates of change include uneven samples
-  LowPass* low_pass_ = nullptr;  // one of the functors
+  std::size_t uneven_ = 0;                    // remaining runs whose rates of change include uneven samples
+  LowPass* low_pass_ = nullptr;               // one of the functors
+  ResultUncertainty* uncertainty_ = nullptr;  // likewise
   std::vector<std::unique_ptr<Functor>> functors_;
   std::vector<Quantity> stage_outputs_;  // written by the functors of the model
   std::vector<std::string> extra_names_;
@@ -357,16 +359,10 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     loop.add(std::move(low_pass));
   }
   if (uncertainty.has_systematic() || uncertainty.has_random()) {
-    std::shared_ptr<const Chain> uncertain = chain;
-    for (const ModelEffect& effect : uncertainty.calibration) {
-      BindingError why;
-      std::optional<Chain> extended = uncertain->with_effect(effect, &why);
-      if (!extended) return fail(why.message());
-      uncertain = std::make_shared<const Chain>(std::move(*extended));
-    }
-    auto functor = ResultUncertainty::build(std::move(uncertain), uncertainty, with, error,
+    auto functor = ResultUncertainty::build(*chain, uncertainty, with, error,
                                             loop.look_ahead_ ? &*loop.look_ahead_ : nullptr);
     if (functor == nullptr) return std::nullopt;
+    loop.uncertainty_ = functor.get();
     loop.add(std::move(functor));
   }
   if (!loop.order(error)) return std::nullopt;

@@ -97,6 +97,19 @@ struct MeasuredQuantities {
     correction.chain.measure(state, parameters, flags);
   }
 
+  /// Recorded quantities that effects modify.
+  static Quantities writes_in_place(const Chain& chain) {
+    Quantities completed;
+    const auto completes = [&](EffectLocation location, Quantity quantity) {
+      if (chain.acts(location) && chain.recorded(quantity)) completed.push_back(quantity);
+    };
+    completes(EffectLocation::radome, Quantity::radome_dynamic_pressure);
+    completes(EffectLocation::attack, Quantity::attack);
+    completes(EffectLocation::sideslip, Quantity::sideslip);
+    completes(EffectLocation::ambient_temperature, Quantity::ambient_temperature);
+    return completed;
+  }
+
   /// Recorded quantities from which `quantity`, recorded or derived, is computed.
   static Quantities sources(const Chain& chain, Quantity quantity) {
     const auto of = [&chain](Quantity other) { return sources(chain, other); };
@@ -128,20 +141,6 @@ struct MeasuredQuantities {
       default:
         return {};
     }
-  }
-
- private:
-  // Recorded quantities modified by effects.
-  static Quantities writes_in_place(const Chain& chain) {
-    Quantities completed;
-    const auto completes = [&](EffectLocation location, Quantity quantity) {
-      if (chain.acts(location) && chain.recorded(quantity)) completed.push_back(quantity);
-    };
-    completes(EffectLocation::radome, Quantity::radome_dynamic_pressure);
-    completes(EffectLocation::attack, Quantity::attack);
-    completes(EffectLocation::sideslip, Quantity::sideslip);
-    completes(EffectLocation::ambient_temperature, Quantity::ambient_temperature);
-    return completed;
   }
 };
 
