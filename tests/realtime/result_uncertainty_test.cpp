@@ -522,6 +522,26 @@ TEST(ResultUncertainty, NearlyCancellingErrorsKeepTheirRest) {
   EXPECT_NEAR(s[Quantity::corrected_static_pressure_uncertainty], b * std::sqrt(2.0 * left), 1e-7 * b);
 }
 
+TEST(ResultUncertainty, ImpossibleUncertaintyIsRefused) {
+  for (const double number : {nan, std::numeric_limits<double>::infinity(), -0.3}) {
+    const auto error_of = [](const ModelUncertainty& uncertainty) {
+      std::string error;
+      Loop::build(law(), roles(everything_recorded()), 1.0, &error, CorrectWith::model, uncertainty);
+      return error;
+    };
+    const auto refused = HasSubstr("negative or not finite; give zero or a positive number");
+    ModelUncertainty uncertainty;
+    uncertainty.static_defect = number;
+    EXPECT_THAT(error_of(uncertainty), refused);
+    uncertainty = {};
+    uncertainty.static_defect_ratio = number;
+    EXPECT_THAT(error_of(uncertainty), refused);
+    uncertainty = {};
+    uncertainty.random[index(Quantity::static_pressure)] = number;
+    EXPECT_THAT(error_of(uncertainty), refused);
+  }
+}
+
 TEST(ResultUncertainty, CovarianceRootScalesUncertainty) {
   const Model model = law();
   ModelUncertainty once = of_parameter(model, 1, 0.001);

@@ -33,8 +33,8 @@ struct ModelUncertainty {
     return std::any_of(covariance.begin(), covariance.end(), [](double value) { return value != 0.0; });
   }
   bool has_random() const {
-    return static_defect > 0.0 || static_defect_ratio > 0.0 ||
-           std::any_of(random.begin(), random.end(), [](double value) { return value > 0.0; });
+    return static_defect != 0.0 || static_defect_ratio != 0.0 ||
+           std::any_of(random.begin(), random.end(), [](double value) { return value != 0.0; });
   }
 
   /// Components that are constant from sample to sample (systematic) and independent (random).

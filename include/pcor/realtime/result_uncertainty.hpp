@@ -71,6 +71,11 @@ class ResultUncertainty final : public Functor {
       if (!extended) return fail(why.message());
       calibrated = std::move(*extended);
     }
+    const auto is_size = [](double value) { return is_finite(value) && value >= 0.0; };
+    if (!is_size(uncertainty.static_defect) || !is_size(uncertainty.static_defect_ratio) ||
+        !std::all_of(uncertainty.random.begin(), uncertainty.random.end(), is_size)) {
+      return fail("a standard uncertainty is negative or not finite; give zero or a positive number");
+    }
     std::vector<std::vector<double>> root;
     if (!uncertainty.covariance.empty()) {
       const std::size_t count = calibrated.parameters().size();
