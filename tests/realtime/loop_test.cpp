@@ -919,7 +919,6 @@ TEST(LoopFunctors, CanRunBetweenModelStages) {
   }
 }
 
-// Of a functor as of the host.
 TEST(LoopFunctors, ImplausibleTemperatureIsMissing) {
   const Sample recorded{{Quantity::static_pressure, 700.0},
                         {Quantity::dynamic_pressure, 67.6},

@@ -74,8 +74,9 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law",
      "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "outside the domain of the law, or flaps extended",
-     "an input lies outside the domain of the law, a quantity of the domain is missing, or the flaps are "
-     "extended: extrapolated"},
+     "an input lies outside the domain of the law, a quantity of the domain is missing, the flaps are "
+     "extended, or "
+     "the absolute delta-p of the model exceeds 0.6 q in flight: no uncertainty"},
     {Quality::after_gap, "after_gap", "near a gap: too few neighbours for rates of change",
      "near a gap, or missing inputs of an airspeed: effects of rates of change have too few neighbours; in "
      "real time also the first sample after a gap"},
@@ -83,9 +84,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
      "delta-p too large, as on the ramp: no delta-p",
-     "absolute delta-p above the dynamic pressure, as on the ramp, or above six tenths of it in flight (20 "
-     "hPa "
-     "or more): no delta-p"},
+     "delta-p above the dynamic pressure, or below its negative, as on the ramp: no delta-p"},
     {Quality::filter_window_incomplete, "filter_window_incomplete", "no filtered LAMS temperature",
      "filter window incomplete, or its result is outside the plausible range: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow", "too slow, as on the ramp: no Mach number, no airspeed",

@@ -18,6 +18,15 @@ namespace pcor {
 /// Dynamic pressure, hPa, from which an aircraft flies: 57 m/s at sea level.
 inline constexpr double min_flight_pressure = 20.0;
 
+/// True in flight for a delta-p, hPa, above six tenths of the dynamic pressure q, hPa, or below its negative:
+/// no static port has such an error, twice the limit of the laser (`max_lams_departure`). False if one is
+/// NaN.
+template <class R, class S>
+auto is_impossible_defect(const R& defect, const S& q) {
+  const R limit(S(4.0 * max_lams_departure) * q);
+  return q >= S(min_flight_pressure) && (defect > limit || defect < -limit);
+}
+
 /// Inverts the measurement, stage by stage, from recorded values to free air, for one model.
 ///
 ///     measure -> static_defect -> correct -> air -> LAMS temperature and dynamic pressure
@@ -92,9 +101,8 @@ class Chain : public BoundModel {
   /// (no airflow), unless a taper, which ends in zero, is used; above Mach 1 (`max_dynamic_ratio`); and if
   /// the absolute defect exceeds the dynamic pressure: above it the corrected dynamic pressure would be
   /// negative; below its negative the port error would be half of the corrected one, ten times that of static
-  /// ports. In flight (`min_flight_pressure`) six tenths of the dynamic pressure are the limit, twice that of
-  /// the laser (`max_lams_departure`): no static port has such an error, so an input of the law is wrong. All
-  /// these set `defect_exceeds_dynamic_pressure`, not `outside_domain`, which keeps the value.
+  /// ports. A value that is impossible in flight (`is_impossible_defect`) has the bit `outside_domain`: an
+  /// input of the law is wrong.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
@@ -105,10 +113,11 @@ class Chain : public BoundModel {
     const auto possible = p >= S(min_static_pressure) && is_subsonic(p, q);
     const auto flowing = possible && (is_tapered ? q > S(0.0) : is_flowing(q));
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
+    const auto enough = is_tapered ? possible && !is_missing(q) : flowing;
     for (const Range& range : domain_) {
       const S& value = state[range.quantity];
       flags.set(value < S(range.lower) || value > S(range.upper), Quality::outside_domain);
-      flags.set(flowing && is_missing(value) && !is_missing(defect), Quality::outside_domain);
+      flags.set(enough && is_missing(value) && !is_missing(defect), Quality::outside_domain);
     }
     if (watches_flaps_) flags.set(state[Quantity::flaps] > S(flaps_in), Quality::outside_domain);
     if (has_minimum()) {
@@ -121,18 +130,20 @@ class Chain : public BoundModel {
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
     }
-    const S largest = select(q >= S(min_flight_pressure), S(S(4.0 * max_lams_departure) * q), q);
-    const auto is_too_large = possible && q > S(0.0) && exceeds(defect, R(largest));
+    flags.set(is_impossible_defect(defect, q), Quality::outside_domain);
+    const auto is_too_large = possible && q > S(0.0) && exceeds(defect, R(q));
     flags.set(is_too_large, Quality::defect_exceeds_dynamic_pressure);
     defect = select(is_too_large, missing<R>(), defect);
-    const auto enough = is_tapered ? possible && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
   }
 
-  /// True if a quantity is outside the domain of the law, or missing, or the flaps are extended without an
-  /// effect that reads them, so that its uncertainty does not apply. The envelope of a surface does not
-  /// count.
+  /// True if a quantity is outside the domain of the law, or missing, if the flaps are extended without an
+  /// effect that reads them, or if delta-p is impossible in flight: the uncertainty of the law does not
+  /// apply. The envelope of a surface does not count. False without delta-p.
   bool is_outside_domain(const State<double>& state) const {
+    const double defect = state[Quantity::static_defect];
+    if (is_missing(defect)) return false;
+    if (is_impossible_defect(defect, state[Quantity::dynamic_pressure])) return true;
     if (watches_flaps_ && state[Quantity::flaps] > flaps_in) return true;
     return std::any_of(domain_.begin(), domain_.end(), [&state](const Range& range) {
       const double value = state[range.quantity];

@@ -38,14 +38,12 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 ///
 /// with y the results of the chain and u_i independent changes of one standard uncertainty: the vectors of
 /// the root of the coefficients' covariance, the noise of each role, of each rate of change (for lags), the
-/// surfaces outside their envelope, and the remaining error of the law. A step of one standard uncertainty
-/// moves a result by at most its own uncertainty, so curvature cancels and limits, as of the taper or of
-/// saturated air, count in the proportion in which the error reaches them. Where one side has no result, the
-/// difference is that of the other side.
+/// surfaces outside their envelope, and the remaining error of the law. Curvature cancels in the
+/// difference; a limit, as of saturated air, counts in the proportion in which the error reaches it. Where
+/// one side has no result, the difference is that of the other side.
 ///
-/// They change slowly, so a sample reuses uncertainties computed less than a second ago at
-/// pressures within 5 %, to limit the cost at 25 Hz. Outside its envelope a surface is flat, and its error
-/// grows by the rms slope inside the envelope. docs/uncertainty.md lists the contributions.
+/// Cost: two runs of the chain for each u_i. Outside its envelope a surface is flat, and its error grows by
+/// the rms slope inside the envelope. docs/uncertainty.md lists the contributions.
 ///
 /// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model. If it is tapered,
 /// the contributions of coefficients and inputs are tapered, too; the model's own uncertainty of delta-p is
@@ -94,15 +92,13 @@ class ResultUncertainty final : public Functor {
     return made;
   }
 
-  void reset() noexcept override { is_complete_ = false; }
-
   /// Keeps the recorded values that the chain modifies in place. Call it before the chain runs.
   void keep_recorded(const State<double>& state) noexcept {
     for (auto& [quantity, value] : recorded_) value = state[quantity];
   }
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
-    if (!still_holds(state)) find(state);
+    find(state);
     // The product makes the uncertainty missing if the result is missing, and outside the domain of the law.
     const double zero = chain_.is_outside_domain(state) ? missing<double>() : 0.0;
     for (std::size_t i = 0; i < uncertain_results.size(); ++i)
@@ -198,29 +194,12 @@ class ResultUncertainty final : public Functor {
     }
   }
 
-  // Uncertainties are reused for less than a second if the pressures have not changed significantly.
-  bool still_holds(const State<double>& state) const noexcept {
-    const double age = state[Quantity::time] - time_;
-    if (!(is_complete_ && age >= 0.0 && age < 0.999) || is_outside_ || is_outside(state)) return false;
-    const double p = state[Quantity::static_pressure];
-    const double q = state[Quantity::dynamic_pressure];
-    return std::abs(p - static_pressure_) <= 0.05 * p && std::abs(q - dynamic_pressure_) <= 0.05 * q;
-  }
-
-  bool is_outside(const State<double>& state) const noexcept {
-    return std::any_of(surfaces_.begin(), surfaces_.end(),
-                       [&state](const FlatOutside& each) { return each.distance(state) > 0.0; });
-  }
-
   void find(const State<double>& state) noexcept {
-    time_ = state[Quantity::time];
-    is_outside_ = is_outside(state);
-    static_pressure_ = state[Quantity::static_pressure];
-    dynamic_pressure_ = state[Quantity::dynamic_pressure];
     inputs_ = state;
     for (const auto& [quantity, value] : recorded_) inputs_[quantity] = value;
     const std::vector<double>& parameters = chain_.parameters();
-    // To the minimum of the policy, which limits no change: the limit is not known better than the law.
+    // The policy raises delta-p to its minimum by this amount. It is kept, so that delta-p keeps the
+    // uncertainty of the law.
     const double raised =
         std::max(0.0, chain_.minimum_defect() - chain_.sum_at_ports(state, parameters.data()));
     at_ports_ = raised;
@@ -236,14 +215,15 @@ class ResultUncertainty final : public Functor {
       add([&](double sign) { inputs_[noise.quantity] = value + sign * noise.size; });
     }
     for (const FlatOutside& each : surfaces_) {
-      const double error = each.slope * each.distance(state) * dynamic_pressure_;
+      const double error = each.slope * each.distance(state) * state[Quantity::dynamic_pressure];
       if (error > 0.0) add([&](double sign) { at_ports_ = raised + sign * error; });
     }
-    const double remaining = std::hypot(static_defect_, static_defect_ratio_ * static_pressure_);
+    const double remaining =
+        std::hypot(static_defect_, static_defect_ratio_ * state[Quantity::static_pressure]);
     if (remaining > 0.0) add([&](double sign) { after_law_ = sign * remaining; });
     for (double& each : found_) each = std::sqrt(each);
-    const double of_temperature = chain_.has_temperature() ? found_[3] + found_[4] : 0.0;
-    is_complete_ = is_finite(found_[0] + found_[1] + found_[2] + of_temperature);
+    // A temperature of the host is not a result.
+    if (!chain_.has_temperature()) found_[3] = found_[4] = missing<double>();
   }
 
   // Adds the variance by one error. `move` sets it to a number of its standard uncertainties.
@@ -290,11 +270,6 @@ class ResultUncertainty final : public Functor {
   double after_law_ = 0.0;  // added to delta-p, hPa
   Results results_{};       // without changes
   Results found_{};
-  bool is_complete_ = false;  // all are finite
-  bool is_outside_ = false;   // computed outside the envelope of a surface
-  double time_ = 0.0;         // time of the sample for which they were computed
-  double static_pressure_ = 0.0;
-  double dynamic_pressure_ = 0.0;
 };
 
 }  // namespace pcor

@@ -177,12 +177,15 @@ struct LamsStaticDefect {
 
 /// True if the laser has its lock: its delta-p differs from delta-p of the model, or from zero, by at most
 /// three tenths of the dynamic pressure (`max_lams_departure`), which is more than any static defect. The
-/// model may be wrong, as with an iced port; at a low dynamic pressure a true defect may exceed the limit.
+/// model may be wrong, as with an iced port, and does not count if it is impossible (`is_impossible_defect`);
+/// at a low dynamic pressure a true defect may exceed the limit.
 /// False if the laser has no delta-p.
 template <class S>
 auto has_laser_lock(const State<S>& state) {
   const S& defect = state[Quantity::lams_static_defect];
-  const S departure = defect - state[Quantity::static_defect];
+  const S& model = state[Quantity::static_defect];
+  const auto is_impossible = is_impossible_defect(model, state[Quantity::port_dynamic_pressure]);
+  const S departure = defect - select(is_impossible, missing<S>(), model);
   const S limit = S(2.0 * max_lams_departure) * state[Quantity::port_dynamic_pressure];
   return (departure <= limit && departure >= -limit) || (defect <= limit && defect >= -limit);
 }
