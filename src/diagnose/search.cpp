@@ -56,20 +56,20 @@ class EquivalentTable {
 
 /// Greatest equivalent score among groups for each column of `scores` (a draw); the rows are the directions
 /// of all groups in order.
-std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<Eigen::Index>& freedom) {
+std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<Directions>& directions) {
   std::vector<EquivalentTable> tables;
-  const Eigen::Index max_freedom = freedom.empty() ? 0 : *std::max_element(freedom.begin(), freedom.end());
+  Eigen::Index max_freedom = 0;
+  for (const Directions& each : directions) max_freedom = std::max(max_freedom, each.freedom);
   for (Eigen::Index k = 0; k <= max_freedom; ++k) tables.emplace_back(k);
   std::vector<double> result(static_cast<std::size_t>(scores.cols()), 0.0);
   for (Eigen::Index draw = 0; draw < scores.cols(); ++draw) {
     Eigen::Index row = 0;
     double& maximum = result[static_cast<std::size_t>(draw)];
-    for (const Eigen::Index count : freedom) {
-      if (count == 0) continue;
+    for (const auto& [count, freedom] : directions) {
       const double chi2 = scores.col(draw).segment(row, count).squaredNorm();
       row += count;
-      if (chi2 <= maximum) continue;  // the equivalent never exceeds chi2
-      maximum = std::max(maximum, count == 1 ? chi2 : tables[static_cast<std::size_t>(count)](chi2));
+      if (freedom == 0 || chi2 <= maximum) continue;  // the equivalent never exceeds chi2
+      maximum = std::max(maximum, freedom == 1 ? chi2 : tables[static_cast<std::size_t>(freedom)](chi2));
     }
   }
   return result;
@@ -163,9 +163,11 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {
       const SymmetricEigen solver(own(identifiable, identifiable));
+      // The symmetric root, unlike eigenvectors, is not moved by rounding errors.
       turned(identifiable, Eigen::all) =
           solver.eigenvectors() *
-          solver.eigenvalues().cwiseMax(rank_limit).cwiseSqrt().cwiseInverse().asDiagonal();
+          solver.eigenvalues().cwiseMax(rank_limit).cwiseSqrt().cwiseInverse().asDiagonal() *
+          solver.eigenvectors().transpose();
     }
     turned_.push_back(std::move(turned));
     begin_.push_back(width);
@@ -263,39 +265,35 @@ GroupScore Search::score(std::size_t group, const std::vector<std::size_t>& othe
 }
 
 Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
-                                    std::vector<Eigen::Index>& freedom) const {
+                                    std::vector<Directions>& directions) const {
   Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(information_.cols(), information_.cols());
   Eigen::Index width = 0;
-  freedom.clear();
+  directions.clear();
   for (const std::size_t group : groups) {
     const Eigen::Index begin = begin_[group];
     const Eigen::Index count = turned_[group].cols();
     const SymmetricEigen solver(conditional.information.block(begin, begin, count, count));
-    Eigen::Index kept = 0;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      if (!(solver.eigenvalues()[k] > redundant_below)) continue;
-      turn.col(width).segment(begin, count) =
-          solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
-      ++width;
-      ++kept;
-    }
-    freedom.push_back(kept);
+    const auto kept = solver.eigenvalues().array() > redundant_below;
+    const Eigen::VectorXd root = kept.select(solver.eigenvalues().cwiseSqrt().cwiseInverse(), 0.0);
+    turn.block(begin, width, count, count) =
+        solver.eigenvectors() * root.asDiagonal() * solver.eigenvectors().transpose();
+    width += count;
+    directions.push_back({count, kept.count()});
   }
   return turn.leftCols(width);
 }
 
 double Search::threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
                             const SearchOptions& options) const {
-  std::vector<Eigen::Index> freedom;
-  const Eigen::MatrixXd turn = normal_turn(conditional, groups, freedom);
+  std::vector<Directions> directions;
+  const Eigen::MatrixXd turn = normal_turn(conditional, groups, directions);
   if (turn.cols() == 0) return std::numeric_limits<double>::infinity();
   std::mt19937_64 engine(options.seed);
   boost::random::normal_distribution<double> normal;  // the same on every machine
   const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
       turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
-  // A root that is continuous in the information: the threshold does not depend on rounding errors.
   const Eigen::MatrixXd root = covariance_root(turn.transpose() * conditional.information * turn);
-  std::vector<double> maxima = maxima_of(root * independent, freedom);
+  std::vector<double> maxima = maxima_of(root * independent, directions);
   const auto position =
       static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));
   std::nth_element(maxima.begin(), maxima.begin() + position, maxima.end());
@@ -529,16 +527,12 @@ SearchResult Search::run(const SearchOptions& options) const {
 
 double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const {
   const Conditional conditional = given(set_without(set_without(others, a), b));
-  std::vector<Eigen::Index> freedom;
-  const Eigen::MatrixXd turn = normal_turn(conditional, {a, b}, freedom);
-  if (freedom[0] == 0 || freedom[1] == 0) return 0.0;
+  std::vector<Directions> directions;
+  const Eigen::MatrixXd turn = normal_turn(conditional, {a, b}, directions);
+  if (directions[0].freedom == 0 || directions[1].freedom == 0) return 0.0;
   const Eigen::MatrixXd turned = turn.transpose() * conditional.information * turn;
-  const Eigen::MatrixXd across = turned.topRightCorner(freedom[0], freedom[1]);
-  if (across.size() == 1)
-    return std::clamp(across(0, 0) * (turned_[a](0, 0) < 0.0 ? -1.0 : 1.0) *
-                          (turned_[b](0, 0) < 0.0 ? -1.0 : 1.0) * (turn(begin_[a], 0) < 0.0 ? -1.0 : 1.0) *
-                          (turn(begin_[b], 1) < 0.0 ? -1.0 : 1.0),
-                      -1.0, 1.0);
+  const Eigen::MatrixXd across = turned.topRightCorner(directions[0].count, directions[1].count);
+  if (across.size() == 1) return std::clamp(across(0, 0), -1.0, 1.0);
   return std::clamp(singular_values(across)[0], 0.0, 1.0);
 }
 

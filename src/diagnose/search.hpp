@@ -57,6 +57,12 @@ struct SearchOptions {
   std::uint64_t seed = 1;
 };
 
+/// Directions of a group of columns.
+struct Directions {
+  Eigen::Index count;
+  Eigen::Index freedom;  ///< number of directions that the other columns do not imitate
+};
+
 /// Score of a group in addition to a set of others.
 struct GroupScore {
   double chi2 = 0.0;
@@ -139,10 +145,10 @@ class Search {
   std::vector<Eigen::Index> shapes_of(const std::vector<std::size_t>& set) const;
   Conditional given(const std::vector<std::size_t>& groups) const;
   GroupScore score_in(const Conditional& conditional, std::size_t group) const;
-  /// Makes each group's columns orthonormal in the conditional information; columns without a remainder
+  /// Makes each group's columns orthonormal in the conditional information; directions without a remainder
   /// become zero.
   Eigen::MatrixXd normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
-                              std::vector<Eigen::Index>& freedom) const;
+                              std::vector<Directions>& directions) const;
   double threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
                       const SearchOptions& options) const;
   /// Score that a winner must exceed: the threshold, raised if the evidence is in a few minutes or if the

@@ -15,11 +15,6 @@ SymmetricEigen::SymmetricEigen(const Eigen::MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
   eigenvalues_ = solver.eigenvalues();
   eigenvectors_ = solver.eigenvectors();
-  for (Eigen::Index k = 0; k < eigenvectors_.cols(); ++k) {
-    Eigen::Index largest = 0;
-    eigenvectors_.col(k).cwiseAbs().maxCoeff(&largest);
-    if (eigenvectors_(largest, k) < 0.0) eigenvectors_.col(k) *= -1.0;
-  }
 }
 
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {

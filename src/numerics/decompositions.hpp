@@ -7,8 +7,7 @@
 namespace pcor::internal {
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix, of which the lower triangle is
-/// read. The largest component of each eigenvector is positive: matrices that are nearly equal have nearly
-/// equal eigenvectors.
+/// read. Rounding errors choose the signs of the eigenvectors, and those of equal eigenvalues.
 class SymmetricEigen {
  public:
   explicit SymmetricEigen(const Eigen::MatrixXd& matrix);
