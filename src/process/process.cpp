@@ -148,21 +148,20 @@ class Processing {
 
   /// Detects sensors that are constant in flight for much longer than their noise permits.
   void find_frozen_sensors() {
-    constexpr std::size_t min_records = 300;  // a sensor with a single value is also excluded
     const auto read = [this](const Input& input) {
       return read_values(flight_, input.variable, input.conversion).values;
     };
     std::vector<bool> flying;
     for (const Input& input : inputs_) {
       if (input.quantity != Quantity::dynamic_pressure) continue;
-      for (const double q : read(input)) flying.push_back(q >= summary_.flying_dynamic_pressure);
+      for (const double q : read(input))
+        flying.push_back(is_missing(q) ? !flying.empty() && flying.back()
+                                       : q >= summary_.flying_dynamic_pressure);
     }
-    const auto flown = static_cast<std::size_t>(std::count(flying.begin(), flying.end(), true));
     std::vector<double> time;
     for (Input& input : inputs_) {
       const std::vector<double> values = read(input);
-      const std::vector<Segment> frozen =
-          find_frozen(values, flying, always_varies(input.quantity) && flown >= min_records);
+      const std::vector<Segment> frozen = find_frozen(input.quantity, values, flying);
       if (frozen.empty()) continue;
       if (time.empty()) time = record_times(flight_);
       summary_.notes.push_back(

@@ -250,11 +250,12 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
 
 void internal::mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double min_airspeed) {
   std::vector<bool> flying;
-  for (const double airspeed : samples.motion.airspeed) flying.push_back(airspeed >= min_airspeed);
+  for (const double airspeed : samples.motion.airspeed)
+    flying.push_back(is_missing(airspeed) ? !flying.empty() && flying.back() : airspeed >= min_airspeed);
   ModelSamples& read = samples.*part;
   for (const auto& [quantity, variable] : read.variables) {
     const std::vector<double>& values = *read.find(quantity);
-    const std::vector<Segment> frozen = find_frozen(values, flying, always_varies(quantity));
+    const std::vector<Segment> frozen = find_frozen(quantity, values, flying);
     for (const Segment& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
     if (!frozen.empty())
       samples.notes.push_back(warning_note(frozen_text(variable, quantity, values, samples.time, frozen)));

@@ -135,9 +135,19 @@ std::vector<Segment> find_frozen(const std::vector<double>& values, const std::v
   return frozen;
 }
 
-bool always_varies(Quantity quantity) {
-  return quantity == Quantity::corrected_static_pressure ||
-         std::find(always_varying.begin(), always_varying.end(), quantity) != always_varying.end();
+std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& values,
+                                 const std::vector<bool>& flying) {
+  constexpr std::ptrdiff_t min_flown = 300;
+  const bool always_varies =
+      quantity == Quantity::corrected_static_pressure ||
+      std::find(always_varying.begin(), always_varying.end(), quantity) != always_varying.end();
+  std::vector<Segment> frozen = find_frozen(
+      values, flying, always_varies && std::count(flying.begin(), flying.end(), true) >= min_flown);
+  if (quantity == Quantity::liquid_water) {
+    const auto is_zero = [&values](const Segment& span) { return values[span.first] == 0.0; };
+    frozen.erase(std::remove_if(frozen.begin(), frozen.end(), is_zero), frozen.end());
+  }
+  return frozen;
 }
 
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,

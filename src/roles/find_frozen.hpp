@@ -14,18 +14,20 @@ namespace pcor::internal {
 /// for at least 20 samples; for 20 times the mean run of the twenty values before and the twenty after
 /// (without the two longest); and much longer than usual in the whole flight: five times the median if the
 /// noise within five minutes before and after exceeds the resolution, otherwise ten times the 90th
-/// percentile. Hence flaps, liquid water outside cloud, a temperature that changes in small steps and an
-/// altitude in whole feet are not reported, and for a coarse sensor only segments shorter than a tenth of the
-/// flight are found.
+/// percentile. Hence flaps, a temperature that changes in small steps and an altitude in whole feet are not
+/// reported, and for a coarse sensor only segments shorter than a tenth of the flight are found.
 ///
 /// @param values NaN where missing, which does not end a run of one value
-/// @param used true for samples that are evaluated
+/// @param used true for samples that are evaluated, as those in flight; others end a run
 /// @param always_varies one value from beginning to end is frozen, too
 std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies = false);
 
-/// True for quantities that always vary in flight; false for flaps and liquid water.
-bool always_varies(Quantity quantity);
+/// Segments of the values of a quantity in flight. A quantity that always varies is also frozen if it has
+/// one value in a flight of 300 samples or more; liquid water of exactly zero, as outside cloud, is never
+/// frozen.
+std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& values,
+                                 const std::vector<bool>& flying);
 
 /// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,

@@ -2,12 +2,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
 
 using pcor::internal::find_frozen;
 using testing::IsEmpty;
+using testing::Not;
 
 namespace {
 
@@ -120,6 +122,21 @@ TEST(Frozen, DropoutsDoNotEndARun) {
 TEST(Frozen, ConstantFlightIsFrozenOnlyForVaryingSensors) {
   const Series still(10800, 131.0);
   const std::vector<bool> all(still.size(), true);
-  EXPECT_EQ(find_frozen(still, all, true).size(), 1U);
-  EXPECT_THAT(find_frozen(still, all), IsEmpty()) << "flaps may stay in for a whole flight";
+  EXPECT_EQ(find_frozen(pcor::Quantity::static_pressure, still, all).size(), 1U);
+  EXPECT_THAT(find_frozen(pcor::Quantity::flaps, still, all), IsEmpty()) << "may stay in for a whole flight";
+  const Series few(299, 131.0);
+  EXPECT_THAT(find_frozen(pcor::Quantity::static_pressure, few, std::vector<bool>(299, true)), IsEmpty());
+}
+
+// Outside cloud a probe may report exactly zero for minutes, between clouds of noisy values.
+TEST(Frozen, ZeroLiquidWaterIsNotFrozen) {
+  Series values = recorded({}, 1);
+  const std::vector<bool> all(values.size(), true);
+  for (std::size_t i = 0; i < values.size(); i += 900)
+    std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(i),
+                std::min<std::size_t>(300, values.size() - i), 0.0);
+  EXPECT_THAT(find_frozen(pcor::Quantity::static_pressure, values, all), Not(IsEmpty()));
+  EXPECT_THAT(find_frozen(pcor::Quantity::liquid_water, values, all), IsEmpty());
+  freeze(values, 5000, 100);
+  EXPECT_EQ(find_frozen(pcor::Quantity::liquid_water, values, all).size(), 1U) << "another value can be";
 }
