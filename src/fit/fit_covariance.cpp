@@ -22,13 +22,19 @@ constexpr double min_part = 120.0;      // s
 /// the flights before it.
 class Blocks {
  public:
-  explicit Blocks(FitFlights& flights)
-      : spans_(flights.share().of_each_flight<Span>([&](std::size_t flight) -> Span {
-          for (const FitFlights* const each : flights.joint()) {
-            const std::vector<double>& time = each->bins(flight).time();
-            if (!time.empty()) return std::pair(time.front(), time.back() - time.front());
+  explicit Blocks(const std::vector<FitEquations>& equations)
+      : spans_(equations.back().flights->share().of_each_flight<Span>([&](std::size_t flight) -> Span {
+          double begin = infinity;
+          double end = -infinity;
+          for (const FitEquations& stage : equations) {
+            for (const FitFlights* const each : stage.flights->joint()) {
+              const std::vector<double>& time = each->bins(flight).time();
+              if (time.empty()) continue;
+              begin = std::min(begin, time.front());
+              end = std::max(end, time.back());
+            }
           }
-          return std::nullopt;
+          return begin <= end ? Span({begin, end - begin}) : std::nullopt;
         })) {
     double all = 0.0;
     std::size_t used = 0;
@@ -181,7 +187,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const S
   const std::vector<std::size_t>& parameters = main.setup().requested;
   const Eigen::Index fitted = as_index(parameters.size());
   const Eigen::Index size = fitted + as_index(main.setup().held.size());
-  const Blocks blocks(main);
+  const Blocks blocks(equations);
   const std::vector<std::string> doubts = doubts_of(main);
   std::vector<Eigen::MatrixXd> excluded(blocks.count(), Eigen::MatrixXd::Zero(fitted, size + 1));
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);

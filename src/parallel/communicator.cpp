@@ -1,6 +1,7 @@
 #include <pcor/parallel/communicator.hpp>
 
 #include <algorithm>
+#include <new>
 
 #include "parallel/packed.hpp"
 
@@ -102,6 +103,9 @@ std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
     talk(last);
   } catch (const Error& of_all) {
     return of_all;
+  } catch (const std::bad_alloc&) {
+    return error.value_or(
+        Error(Error::Code::system, "the memory is exhausted; give fewer or shorter flights at a time"));
   }
   return std::nullopt;
 }

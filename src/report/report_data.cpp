@@ -190,22 +190,26 @@ json sums_json(const std::vector<WhatIfSums>& all) {
   return sums;
 }
 
-// Samples at which the columns are kept, of those with a value in all columns: all in a flight of up to
-// 16,000; in a longer flight every second (third ...) and the last one.
+// Samples at which the columns are kept, of those with a value in all columns: all if the report has up to
+// 64,000 of them; otherwise every second (third ...) of each flight, and its last one.
 std::vector<std::uint32_t> what_if_points(const WhatIfPanel& panel, const Report& report) {
-  constexpr std::size_t max_points = 16000;  // of a flight
+  constexpr std::size_t max_points = 64000;
   const std::vector<std::size_t> bounds = bounds_of(report);
-  std::vector<std::uint32_t> points;
-  for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
-    std::vector<std::uint32_t> known;
+  std::vector<std::vector<std::uint32_t>> known(bounds.size() - 1);
+  std::size_t count = 0;
+  for (std::size_t flight = 0; flight < known.size(); ++flight) {
     for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
       if (std::all_of(panel.coefficients.begin(), panel.coefficients.end(),
                       [i](const WhatIfCoefficient& each) { return std::isfinite(each.column[i]); }))
-        known.push_back(static_cast<std::uint32_t>(i));
+        known[flight].push_back(static_cast<std::uint32_t>(i));
     }
-    const std::size_t step = (known.size() + max_points - 1) / max_points;
-    for (std::size_t k = 0; k < known.size(); ++k)
-      if (k % step == 0 || k + 1 == known.size()) points.push_back(known[k]);
+    count += known[flight].size();
+  }
+  const std::size_t step = std::max<std::size_t>(1, (count + max_points - 1) / max_points);
+  std::vector<std::uint32_t> points;
+  for (const std::vector<std::uint32_t>& of_flight : known) {
+    for (std::size_t k = 0; k < of_flight.size(); ++k)
+      if (k % step == 0 || k + 1 == of_flight.size()) points.push_back(of_flight[k]);
   }
   return points;
 }

@@ -62,6 +62,7 @@ void FlightReport::add_position() {
 void FlightReport::add_flights_to_info() {
   for (const ShownFlight& flight : flights_) {
     const std::vector<double>& time = flight.samples->time;
+    if (time.empty()) continue;
     report_.info.emplace_back("Flight",
                               fmt::format("{}, {} to {} UTC", flight.samples->name, utc_text(time.front()),
                                           utc_text(time.back(), "%H:%M:%S")));

@@ -20,12 +20,10 @@ class FlightReport {
   const Report& report() const { return report_; }
 
   /// Adds a flight: its name, the times of the shown records, and the intervals that contain one of them.
-  /// Without records the report does not have the flight.
   void add_flight(std::shared_ptr<const FlightSamples> samples, std::vector<std::size_t> records);
 
   /// Values of a series at the shown records of all flights; NaN for a flight without the series. A flight is
-  /// found by its name and times; of flights with equal names and times the first is the first added, and so
-  /// on.
+  /// found by its name and times; flights with equal names and times are matched in order.
   ///
   /// @param flights with a member `samples`, which may be null
   /// @param series member of a flight, or a function of it, with a value for each record, or empty

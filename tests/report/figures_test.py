@@ -98,7 +98,7 @@ class Figures(unittest.TestCase):
         (self.folder / "no_report.html").write_text("<!DOCTYPE html><title>Other</title><p>Text")
         for browser, report, words in (("/nowhere/chromium", "report.html", "/nowhere/chromium"),
                                        (shutil.which("false"), "report.html", "failed"), (shutil.which("true"), "report.html", "no pictures"),
-                                       (CHROMIUM, "no_report.html", "no pictures"), (CHROMIUM, "absent.html", "absent.html")):
+                                       (CHROMIUM, "no_report.html", "not a report"), (CHROMIUM, "absent.html", "absent.html")):
             with self.subTest(browser=browser, report=report):
                 found = subprocess.run([PROGRAM, self.folder / report, folder], env={**os.environ, "CHROMIUM": str(browser)},
                                        capture_output=True, text=True)
@@ -106,6 +106,30 @@ class Figures(unittest.TestCase):
                 self.assertIn(words, found.stderr)
                 self.assertEqual(found.stderr.count("\n"), 1)
                 self.assertFalse(folder.exists())
+
+    def test_a_failed_run_keeps_earlier_pictures(self):
+        folder = self.folder / "kept"
+        self.figures(folder)
+        before = {each.name: each.read_bytes() for each in folder.iterdir()}
+        programs = self.folder / "programs"
+        programs.mkdir()
+        # A copy that fails half-way, as on a full disk.
+        (programs / "cp").write_text('#!/bin/sh\ncase $* in *.pcor-figures-*) exit 1 ;; esac\nexec /bin/cp "$@"\n')
+        (programs / "cp").chmod(0o755)
+        found = subprocess.run(self.command(folder, "slide"), env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"},
+                               capture_output=True, text=True)
+        self.assertEqual(found.returncode, 1)
+        self.assertIn(str(folder), found.stderr)
+        self.assertEqual({each.name: each.read_bytes() for each in folder.iterdir()}, before)
+
+    def test_browser_is_started_by_the_name_of_its_link(self):
+        # The Chromium of a snap is a link to a program that starts others by the name that it is called by.
+        dispatcher = self.folder / "dispatcher"
+        dispatcher.write_text(f"#!/bin/sh\n[ \"${{0##*/}}\" = my-browser ] && exec '{CHROMIUM}' \"$@\"\nexit 64\n")
+        dispatcher.chmod(0o755)
+        (self.folder / "my-browser").symlink_to(dispatcher)
+        vectors, _ = self.figures(self.folder / "linked", CHROMIUM=str(self.folder / "my-browser"))
+        self.assertEqual(len(vectors), PANELS)
 
     def test_temporary_folder_may_have_any_name(self):
         # Chromium makes a socket, whose path may have at most 107 characters, in the folder of temporary files.

@@ -243,7 +243,7 @@ TEST(Report, WhatIfSumsAreStoredExactly) {
   EXPECT_EQ(item["noiseLabel"], "noise");
 }
 
-TEST(Report, WhatIfHasAllSamplesOfAFlightOf16000) {
+TEST(Report, WhatIfHasAllSamplesWithValues) {
   constexpr std::size_t samples = 16003;  // three of them lack a column
   Report report = report_of(samples, 1);
   WhatIfPanel panel = what_if_of(samples);
@@ -262,17 +262,17 @@ TEST(Report, WhatIfHasAllSamplesOfAFlightOf16000) {
   EXPECT_NEAR(column[499], 251.0, 0.062);
 }
 
-TEST(Report, WhatIfHasRegularSamplesOfEachLongerFlight) {
-  Report report = report_of(16001 + 5 + 32001, 1);
-  report.flight_starts = {0, 16001, 16006};
+TEST(Report, WhatIfHasRegularSamplesOfEachFlightIfThereAreMore) {
+  Report report = report_of(64001 + 5 + 63000, 1);
+  report.flight_starts = {0, 64001, 64006};
   report.flight_names = {"rf01", "rf02", "rf03"};
   report.items = {what_if_of(report.time.size())};
   const auto item = data_of(report_html(report))["items"][0];
   std::vector<std::int64_t> expected;
-  for (std::int64_t i = 0; i < 16001; i += 2) expected.push_back(i);
-  for (std::int64_t i = 16001; i < 16006; ++i) expected.push_back(i);
-  for (std::int64_t i = 16006; i < 48007; i += 3) expected.push_back(i);
-  expected.push_back(48006);  // the last one
+  for (std::int64_t i = 0; i < 64001; i += 2) expected.push_back(i);
+  for (std::int64_t i = 64001; i < 64006; i += 2) expected.push_back(i);
+  for (std::int64_t i = 64006; i < 127006; i += 2) expected.push_back(i);
+  expected.push_back(127005);  // the last one
   EXPECT_EQ(unpacked(item["points"]), expected);
 }
 
