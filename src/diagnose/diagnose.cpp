@@ -320,6 +320,23 @@ std::string component_text(const EmpiricalPredictor& variable) {
 
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
 
+namespace {
+
+bool may_be_of(bool reference, const Finding& finding) {
+  constexpr double min_probability = 0.01;
+  return finding.of_reference == reference ||
+         std::any_of(finding.aliases.begin(), finding.aliases.end(), [reference](const Alias& alias) {
+           return alias.probability >= min_probability &&
+                  (alias.effect.rfind("reference:", 0) == 0) == reference;
+         });
+}
+
+}  // namespace
+
+bool Finding::may_be_of_model() const { return may_be_of(false, *this); }
+
+bool Finding::may_be_of_reference() const { return may_be_of(true, *this); }
+
 std::vector<std::size_t> Diagnosis::flights_with_records() const {
   std::vector<std::size_t> numbers;
   for (const FlightDiagnosis& flight : flights) {

@@ -139,7 +139,7 @@ bool is_one_of(const std::string& effect, const std::vector<std::size_t>& chosen
 struct Rival {
   std::size_t group;
   double less;  ///< decrease of the logarithm of the marginal likelihood, in the shapes of the catalogue
-  double less_uncertain;  ///< the same with the uncertain shapes of both
+  double less_uncertain;  ///< the same if the shape of the chosen effect is uncertain, for both
 };
 
 /// Part of an effect's chi2 in references where a rival differs from it: the effect's contribution against
@@ -196,7 +196,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
     const std::vector<std::size_t> instead = set_with(others, g);
     const double less = best - search.evidence(instead, others);
     if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
-      rivals.push_back({g, less, best_uncertain - search.evidence(instead)});
+      rivals.push_back({g, less, best_uncertain - search.evidence(instead, chosen)});
   }
   return rivals;
 }

@@ -101,23 +101,27 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-enum class System { own, other };
-
-/// Whether an effect of the static system of the model, or of the other system, may cause the finding. If the
-/// other system may cause it, the model stays unchanged.
-bool may_be_of(System system, const Finding& finding) {
-  const bool other = system == System::other;
-  return finding.of_reference == other ||
-         std::any_of(finding.aliases.begin(), finding.aliases.end(), [other](const Alias& alias) {
-           return alias.probability >= min_probability && (alias.effect.rfind("reference:", 0) == 0) == other;
-         });
-}
-
 /// Rms of a - b over the samples in which both have a value.
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
   SquareSum sum;
   for (std::size_t i = 0; i < a.size(); ++i) sum.add(a[i] - b[i]);
   return sum.rms();
+}
+
+/// Whether a surface of the attack may describe what the model lacks: structure without a named cause, or an
+/// effect of the attack, and no larger effect of another kind. The surface would imitate that effect on these
+/// flights.
+bool surface_may_describe(const Diagnosis& diagnosis) {
+  bool is_open = diagnosis.verdict == Verdict::partial || diagnosis.verdict == Verdict::unexplained;
+  double lacking = is_open ? diagnosis.unexplained.rms : 0.0;
+  double other = 0.0;
+  for (const Finding& finding : diagnosis.findings) {
+    const bool is_of_attack = finding.family == "attack";
+    is_open = is_open || is_of_attack;
+    double& part = is_of_attack ? lacking : other;
+    part = std::max(part, finding.rms);
+  }
+  return is_open && lacking >= other;
 }
 
 /// Forward selection of effects: the steps so far, and the next ones.
@@ -144,6 +148,7 @@ class ForwardSelection {
     choose_among_rivals();
     add_surface();
     compare_with_the_given();
+    for (const auto& [id, refusal] : refused_) notes_.push_back(refusal);
     result_.fit.notes.insert(result_.fit.notes.end(), notes_.begin(), notes_.end());
     return std::move(result_);
   }
@@ -263,11 +268,7 @@ class ForwardSelection {
   /// If structure remains, or an effect of attack with an undetermined shape: adds a smooth surface if it
   /// reduces the residual of samples outside its fit by more than chance.
   void add_surface() {
-    const Diagnosis& now = diagnosis();
-    const bool has_attack = std::any_of(now.findings.begin(), now.findings.end(),
-                                        [](const Finding& finding) { return finding.family == "attack"; });
-    const bool is_open = now.verdict == Verdict::partial || now.verdict == Verdict::unexplained || has_attack;
-    if (!loop_.offer_surface || !is_open) return;
+    if (!loop_.offer_surface || !surface_may_describe(diagnosis())) return;
     const TrialModel before{result_.model, delivered_alike_};
     std::optional<SurfaceOffer> offer;
     try {
@@ -354,19 +355,20 @@ class ForwardSelection {
       return stop(StopReason::max_steps, fmt::format("{} effects were added, the maximum", added));
     std::vector<std::string> refusals;
     for (OfferedEffect& candidate : candidates) {
+      const std::string id = candidate.choices.front().effect.id;
+      refused_.erase(id);
       std::string refusal = refusal_of(std::move(candidate));
       if (!refusal.empty()) {
-        refusals.push_back(std::move(refusal));
+        refusals.push_back(refusal);
+        refused_[id] = std::move(refusal);
       } else if (!all || result_.steps.size() > loop_.max_steps) {
         break;
       }
     }
     // After an addition, the diagnosis of the extended model has the next candidates.
-    if (result_.steps.size() > added + 1) {
-      notes_.insert(notes_.end(), refusals.begin(), refusals.end());
-    } else {
-      stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
-    }
+    if (result_.steps.size() > added + 1) return;
+    refused_.clear();  // `why_stopped` has them
+    stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
   }
 
   void stop(StopReason reason, std::string why) {
@@ -384,7 +386,7 @@ class ForwardSelection {
     std::vector<OfferedEffect> candidates;
     if (now.verdict == Verdict::silent) return candidates;
     for (const Finding& finding : now.findings) {
-      if (!may_be_of(System::other, finding) && !has_effect(result_.fit.model, finding.effect.id))
+      if (!finding.may_be_of_reference() && !has_effect(result_.fit.model, finding.effect.id))
         candidates.push_back(candidate_of(finding, now));
     }
     if (names_causes() || !loop_.trace_variables) return candidates;
@@ -412,11 +414,11 @@ class ForwardSelection {
               shown(now.noise_rms), off.empty() ? "" : "; but ", fmt::join(off, "; ")));
     }
     for (const Finding& finding : now.findings) {
-      if (may_be_of(System::other, finding)) {
+      if (finding.may_be_of_reference()) {
         return stop(StopReason::reference_system,
                     fmt::format("{} {} of the reference system, so the model is unchanged (--trust-reference "
                                 "assumes that this system is right){}{}",
-                                finding.id(), may_be_of(System::own, finding) ? "may be an error" : "is",
+                                finding.id(), finding.may_be_of_model() ? "may be an error" : "is",
                                 finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));
       }
     }
@@ -529,8 +531,9 @@ class ForwardSelection {
   std::vector<std::string> delivered_alike_{};
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
-  std::vector<double> error_of_first_{};  // hPa, of each of them, if the first rival is applied
-  Notes notes_{};                         // notes of the selection, after the notes of the last fit
+  std::vector<double> error_of_first_{};          // hPa, of each of them, if the first rival is applied
+  Notes notes_{};                                 // notes of the selection, after the notes of the last fit
+  std::map<std::string, std::string> refused_{};  // why the last trial of an effect was dropped
 };
 
 }  // namespace

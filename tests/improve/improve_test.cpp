@@ -222,6 +222,15 @@ TEST_F(Improve, RefusedFindingIsFollowedByTheOthers) {
   EXPECT_THAT(improvement.fit.notes[0].text, HasSubstr("static-lag was tried and dropped"));
 }
 
+TEST_F(Improve, RefusedFindingThatIsAddedLaterHasNoNote) {
+  const Improvement improvement =
+      run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
+           diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)},
+          {1.0, 1.1, 0.7, 0.5});
+  EXPECT_THAT(added(improvement), ElementsAre("", "static-mach", "static-lag"));
+  EXPECT_THAT(improvement.fit.notes, testing::IsEmpty());
+}
+
 TEST_F(Improve, FindingsOfTheLastDiagnosisAreTriedBeforeTheEnd) {
   const Improvement improvement =
       run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
@@ -294,6 +303,21 @@ SurfaceOffer helpful_surface(const TrialModel& model, double rms) {
   offer.out_of_fit.rms_after = 0.5;
   offer.out_of_fit.gain = 100.0;
   return offer;
+}
+
+// A drift of either system cannot be added, and a surface of the attack would imitate it on these flights.
+TEST_F(Improve, SurfaceDoesNotReplaceALargerEffectOfAnotherKind) {
+  loop_.offer_surface = [](const TrialModel& model) { return helpful_surface(model, 0.5); };
+  for (const bool attack_is_larger : {false, true}) {
+    Diagnosis both = diagnosis(Verdict::identified, {"time-drift", "static-alpha-quad"});
+    both.findings[0].of_reference = both.findings[1].of_reference = true;
+    both.findings[0].family = "drift";
+    both.findings[0].rms = 0.2;
+    both.findings[1].family = "attack";
+    both.findings[1].rms = attack_is_larger ? 0.3 : 0.001;
+    const Improvement improvement = run({both});
+    EXPECT_EQ(improvement.steps.size(), attack_is_larger ? 2U : 1U);
+  }
 }
 
 TEST_F(Improve, RivalsThatCannotBeFittedTogetherAreNotApplied) {

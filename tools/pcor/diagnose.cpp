@@ -147,12 +147,19 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
                   shell_path(options.comparison.flights.front()), output_file("extended.toml", inputs),
                   program(), flights, output_file("fitted.toml", inputs));
   const std::vector<Finding>& findings = diagnosis.findings;
-  const auto of_reference = [](const Finding& finding) { return finding.of_reference; };
   const auto of_catalogue = [](const Finding& finding) {
-    return !finding.effect.is_formula() && !finding.of_reference;
+    return !finding.effect.is_formula() && !finding.may_be_of_reference();
   };
-  if (!findings.empty() && std::all_of(findings.begin(), findings.end(), of_reference)) {
-    return "The effect belongs to the reference system; the model is unchanged. To see it: " + compare;
+  const auto may_be_of_reference = [](const Finding& finding) { return finding.may_be_of_reference(); };
+  const auto may_be_of_model = [](const Finding& finding) { return finding.may_be_of_model(); };
+  if (!findings.empty() && std::all_of(findings.begin(), findings.end(), may_be_of_reference)) {
+    return fmt::format("{}; the model is unchanged. To see it: {}",
+                       std::none_of(findings.begin(), findings.end(), may_be_of_model)
+                           ? "The effect belongs to the reference system"
+                           : "The difference of two systems does not show which of them has the error: a "
+                             "further reference does "
+                             "(--reference lams, wind or height)",
+                       compare);
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
@@ -168,7 +175,8 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
     return fmt::format("{}To add {} and fit: {}{}", without, findings.size() == 1 ? "it" : "them", add,
                        and_fit);
   }
-  if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
+  if (sure && findings.size() == 1 && !findings[0].may_be_of_reference() &&
+      findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
     const ModelEffect& effect = findings[0].effect;
     return fmt::format("To add it and fit: {} add {} {} --where {}{}", program(), shell_quote(effect.id),
                        shell_option("--formula", effect.formula), info_of(effect.location).name, and_fit);

@@ -195,6 +195,12 @@ struct Finding {
 
   /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.
   std::string id() const;
+
+  /// Whether an effect on the static system of the model may be the cause: this one or an alias of at least
+  /// 1 % probability.
+  bool may_be_of_model() const;
+  /// The same for an effect on the system of a reference.
+  bool may_be_of_reference() const;
 };
 
 template <class Field>
