@@ -278,7 +278,7 @@ Angles angles_at(const FlightMotion& motion, const Series& heading, const Series
   return angles;
 }
 
-// Height above some level, m: by GPS; where it is missing, the pressure altitude plus the D-value of the
+// Height above some level, m: by GPS; if it is missing, the pressure altitude plus the D-value of the
 // last height by GPS, before the first one that of the first.
 Series heights(const FlightSamples& samples, const Air& air) {
   Series z = samples.motion.altitude;

@@ -91,7 +91,7 @@ class Analysis {
   /// Coefficients of all columns, zero except those of base and groups.
   /// @param estimate of base and groups, in the order of `Search::fit`
   Eigen::VectorXd coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) const;
-  /// The same by maximum likelihood.
+  /// Coefficients by maximum likelihood.
   Eigen::VectorXd coefficients(const std::vector<std::size_t>& groups) const {
     return coefficients(groups, search_->fit(groups).estimate);
   }

@@ -30,7 +30,7 @@ struct Tail {
   double times;
   double share;
 };
-constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {10.0, 0.05}}};
+constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {widest_prior, 0.05}}};
 
 /// `chi2_one_dof` from a table, because draws call it thousands of times.
 class EquivalentTable {

@@ -57,6 +57,9 @@ struct SearchOptions {
   std::uint64_t seed = 1;
 };
 
+/// Standard deviation of the widest prior of an effect, in usual sizes.
+inline constexpr double widest_prior = 10.0;
+
 /// Directions of a group of columns.
 struct Directions {
   Eigen::Index count;

@@ -145,7 +145,12 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
                     const std::vector<std::string>& rivals) {
   const std::string names = join_list(rivals);
   if (plan.regime == nullptr) {
-    const std::string general = general_advice(id, effect);
+    const bool is_of_either_system = std::any_of(
+        rivals.begin(), rivals.end(),
+        [&id](const std::string& rival) { return rival == "reference:" + id || "reference:" + rival == id; });
+    const std::string general =
+        is_of_either_system ? "a further --reference (lams, wind or height) shows which system has the error"
+                            : general_advice(id, effect);
     return fmt::format("no regime of these flights would separate {} from {} if repeated up to {} times{}{}",
                        id, names, max_repeats, general.empty() ? "" : "; ", general);
   }

@@ -31,7 +31,7 @@ class VariableValues {
   std::vector<double> quantiles(std::size_t number) const;
 
  private:
-  std::vector<double> values_{};  // in the order of the flights
+  std::vector<double> values_{};  // values in the order of the flights
   std::size_t missing_ = 0;
   double minimum_ = 0.0;
   double maximum_ = 0.0;

@@ -26,11 +26,13 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
   if (model.variables.count(Quantity::lams_airspeed) == 0) {
     throw Error(
         Error::Code::model,
-        fmt::format(
-            "model '{}' has no lams_airspeed, and the default reference is the laser; for a flight without "
-            "laser give --reference static:OTHER.toml, total:PS+QC, pressure:PS, height or wind ('pcor "
-            "inspect' lists what the flight allows); otherwise name the variable in the table [variables]",
-            model.model.name));
+        fmt::format("model '{}' has no lams_airspeed, which the reference lams (the default) reads; name the "
+                    "variable of "
+                    "the laser in [variables], for example lams_airspeed = \"VLAMS\", or give --reference "
+                    "static:OTHER.toml, total:PS+QC, pressure:PS, height or wind ('pcor inspect' lists what "
+                    "the flight "
+                    "allows)",
+                    model.model.name));
   }
   return lams_reference();
 }

@@ -136,6 +136,9 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
     const Plan plan = best_plan(regimes, rivalry);
     EXPECT_EQ(plan.regime, nullptr);
     EXPECT_EQ(plan.power, 0.0);
+    // The manoeuvres of the catalogue separate effects, not systems.
+    EXPECT_THAT(text_of({}, "static-lag", lag, {"temp-lag", "reference:static-lag"}),
+                HasSubstr("--reference"));
     const std::string text = text_of(plan, "reference:static-lag", lag, {"temp-lag"});
     EXPECT_THAT(text, HasSubstr(manoeuvre));
     EXPECT_THAT(text, Not(HasSubstr("%")));

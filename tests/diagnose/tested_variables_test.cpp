@@ -60,7 +60,7 @@ TEST_F(RecordedVariables, LowerRatesAreInterpolated) {
   EXPECT_THAT(variable.sampling, testing::HasSubstr("one value in 10 records, interpolated"));
 }
 
-// Spellings of degrees of a temperature and of an angular rate; the values are no angles, which are held.
+// Spellings of degrees of a temperature and of an angular rate; the values are not angles, which are held.
 TEST_F(RecordedVariables, DegreesOfOtherQuantitiesAreInterpolated) {
   std::vector<double> values(records, nan);
   for (std::size_t i = 0; i < records; i += 10) values[i] = 4.0 * static_cast<double>(i);

@@ -30,7 +30,7 @@ TEST(Quantity, NamesResolveToTheirQuantity) {
   EXPECT_EQ(quantity_named(""), Quantity::count);
 }
 
-// The missing value of NCAR's files is no value of a role, but of the date, in days.
+// The missing value of NCAR's files is not a value of a role, but of the date, in days.
 TEST(Quantity, MissingValueOfFilesIsImplausible) {
   for (std::size_t i = 0; i < pcor::role_count; ++i) {
     const auto role = static_cast<Quantity>(i);

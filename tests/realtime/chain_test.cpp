@@ -297,7 +297,7 @@ TEST(Policy, DomainFlagsEachEndAndKeepsValues) {
   }
 }
 
-// Nobody knows whether the law holds there.
+// It is unknown whether the law holds there.
 TEST(Policy, UnknownDomainQuantityIsNotInside) {
   Model model = truth.model();
   model.domain = {{"altitude", 0.0, 5000.0}};

@@ -942,7 +942,7 @@ TEST(Loop, AirspeedNeedsARecordedTemperature) {
   loop.state()[Quantity::ambient_temperature] = 280.0;
   run(loop, recorded, 0.0);
   EXPECT_THAT(loop.state()[Quantity::corrected_airspeed], IsNan());
-  EXPECT_EQ(loop.state()[Quantity::ambient_temperature], 280.0) << "of the host";
+  EXPECT_EQ(loop.state()[Quantity::ambient_temperature], 280.0) << "value of the host";
 }
 
 TEST(LoopLams, CorrectsAndFlagsValidSamples) {
@@ -1074,7 +1074,7 @@ TEST(LoopLams, UnlockedLaserHasNoResults) {
       SCOPED_TRACE(speed);
       run(loop, with(level, {{Quantity::lams_airspeed, speed}}), time++);
       EXPECT_EQ(loop.quality().has(Quality::lams_missing), !is_locked);
-      // Saturation at the temperature of a wrong laser is no limit of the humidity.
+      // Saturation at the temperature of a wrong laser is not a limit of the humidity.
       EXPECT_FALSE(loop.quality().has(Quality::humidity_limited));
       for (const Quantity result : {Quantity::lams_temperature, Quantity::lams_dynamic_pressure})
         EXPECT_EQ(std::isnan(loop.state()[result]), !is_locked) << pcor::info_of(result).name;

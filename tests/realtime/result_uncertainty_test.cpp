@@ -260,7 +260,7 @@ TEST(ResultUncertainty, RoleUncertaintyEqualsTheClosedForm) {
   const double h = std::pow(1.0 + q / p, 2.0 / 7.0) - 1.0;
   struct Case {
     Quantity role;
-    double dp, dq, of_thermometer;  // by one unit of the role
+    double dp, dq, of_thermometer;  // changes by one unit of the role
   };
   for (const Case& each :
        {Case{Quantity::static_pressure, 1.004, -0.004, 0.0}, Case{Quantity::dynamic_pressure, 0.0, 1.0, 0.0},
@@ -339,7 +339,7 @@ TEST(ResultUncertainty, NoiseReachesResultsThroughEveryLocation) {
   const Recorded recorded = without(everything_recorded(), {Quantity::lams_airspeed});
   struct Case {
     EffectLocation location;
-    double slope;  // of delta-p by what the effect adds
+    double slope;  // change of delta-p by one unit of the effect
   };
   Model law;
   law.effects = {{"static-attack", {0.001}}, {"static-alpha", {0.02}}};

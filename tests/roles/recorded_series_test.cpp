@@ -72,7 +72,7 @@ TEST_F(WithValues, UnitMayBeStatedByTheAircraft) {
 TEST_F(WithValues, NothingIsFoundWithoutValues) {
   const Flight& file = flight();
   EXPECT_EQ(first_with_values(file, aircraft(), aircraft().processed), nullptr) << "Q1 is missing";
-  EXPECT_EQ(first_with_values(file, aircraft(), "roll"), "") << "the aircraft names none";
+  EXPECT_EQ(first_with_values(file, aircraft(), "roll"), "") << "the aircraft names no variable of that role";
   EXPECT_EQ(first_with_values(file, aircraft(), VariableNaming().thermometers), nullptr);
   EXPECT_EQ(processed_static_pressure(file, aircraft()), "P1") << "has values without its dynamic pressure";
 }

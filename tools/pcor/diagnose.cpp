@@ -161,7 +161,9 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
                              "(--reference lams, wind or height)",
                        compare);
   }
-  const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
+  const bool sure = (diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous) &&
+                    std::all_of(findings.begin(), findings.end(),
+                                [](const Finding& finding) { return finding.rival.empty(); });
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
     std::string without;
     std::string add = program() + " add";

@@ -190,7 +190,7 @@ struct Finding {
   double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
   double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
   Advice advice{};
-  /// Cause outside the catalogue that may replace it: "the atmosphere"; otherwise empty.
+  /// Cause outside the catalogue that may replace it: "the atmosphere", "an unknown error"; otherwise empty.
   std::string rival{};
 
   /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.
@@ -199,7 +199,7 @@ struct Finding {
   /// Whether an effect on the static system of the model may be the cause: this one or an alias of at least
   /// 1 % probability.
   bool may_be_of_model() const;
-  /// The same for an effect on the system of a reference.
+  /// Whether an effect on the system of a reference may be the cause, likewise.
   bool may_be_of_reference() const;
 };
 

@@ -69,7 +69,8 @@ class LookAhead {
   /// Number of samples in the window of a rate.
   std::size_t window() const { return before_ + 1 + delay_; }
 
-  /// True if a rate of change depends on the quantity; that of the airspeed depends on every recorded one.
+  /// True if a rate of change depends on the quantity; the rate of the airspeed depends on every recorded
+  /// quantity.
   bool reads(Quantity quantity) const {
     return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
       return change.of == quantity ||

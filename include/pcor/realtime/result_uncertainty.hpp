@@ -242,7 +242,7 @@ class ResultUncertainty final : public Functor {
     }
   }
 
-  // Results of the chain for the inputs, parameters and amounts as they are set.
+  // Results of the chain for the present inputs, parameters and amounts.
   Results results() const noexcept {
     NoQualityFlags flags;
     State<double> state = inputs_;
@@ -257,7 +257,7 @@ class ResultUncertainty final : public Functor {
     return found;
   }
 
-  Chain chain_;  // with the calibrations of the uncertainty
+  Chain chain_;  // model with the calibrations of the uncertainty
   std::vector<std::vector<double>> root_;
   double static_defect_;
   double static_defect_ratio_;
@@ -268,7 +268,7 @@ class ResultUncertainty final : public Functor {
   std::vector<double> parameters_;
   double at_ports_ = 0.0;   // added to the effects at the static ports, hPa
   double after_law_ = 0.0;  // added to delta-p, hPa
-  Results results_{};       // without changes
+  Results results_{};       // results without changes
   Results found_{};
 };
 

@@ -191,8 +191,8 @@ struct WhatIfCoefficient {
   double maximum = std::numeric_limits<double>::infinity();
   bool fixed = false;      ///< true: keeps its given value
   std::string argument{};  ///< command-line argument that names it, shell-quoted
-  /// Decrease of the residual per unit of the coefficient, one value per sample; NaN if unknown. Of a flight
-  /// of more than 16,000 samples the page has regular samples, between which it interpolates linearly.
+  /// Decrease of the residual per unit of the coefficient, one value per sample; NaN if unknown. A page
+  /// of more than 64,000 samples has regular ones, between which it interpolates linearly.
   std::vector<double> column{};
 };
 
