@@ -190,18 +190,6 @@ std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
   return all;
 }
 
-/// An effect two standard deviations beyond the widest prior of its size may be the image of another error.
-void doubt_by_size(Diagnosis& diagnosis) {
-  for (Finding& finding : diagnosis.findings) {
-    if (!(finding.times_usual > 2.0 * widest_prior) || !finding.rival.empty()) continue;
-    finding.rival = "an unknown error";
-    diagnosis.notes.push_back(warning_note(fmt::format(
-        "{} is {:.2g} times its usual size: look for a wrong entry in the model, a wrong unit or another "
-        "cause first",
-        finding.id(), finding.times_usual)));
-  }
-}
-
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())

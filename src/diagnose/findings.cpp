@@ -538,4 +538,18 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   return limits;
 }
 
+void doubt_by_size(Diagnosis& diagnosis) {
+  for (Finding& finding : diagnosis.findings) {
+    if (!(finding.times_usual > 2.0 * widest_prior) || !finding.rival.empty() ||
+        predicts_held_out_parts(finding))
+      continue;
+    finding.rival = "an unknown error";
+    diagnosis.notes.push_back(warning_note(
+        fmt::format("{} is {:.2g} times its usual size and does not clearly predict held-out parts (chi2 "
+                    "falls by {:.0f} +- "
+                    "{:.0f}): look for a wrong entry in the model, a wrong unit or another cause first",
+                    finding.id(), finding.times_usual, finding.gain, finding.gain_error)));
+  }
+}
+
 }  // namespace pcor::internal

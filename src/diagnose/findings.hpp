@@ -31,4 +31,13 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
 std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                   const std::vector<Finding>& findings);
 
+/// Whether a finding predicts held-out parts: their chi2 decreases by more than three standard errors.
+inline bool predicts_held_out_parts(const Finding& finding) {
+  return finding.gain > 3.0 * finding.gain_error;
+}
+
+/// An effect two standard deviations beyond the widest prior of its size may be the image of another error,
+/// unless it predicts held-out parts: "an unknown error" becomes its rival, with a note.
+void doubt_by_size(Diagnosis& diagnosis);
+
 }  // namespace pcor::internal

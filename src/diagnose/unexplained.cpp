@@ -14,6 +14,7 @@
 #include <pcor/model/formula.hpp>
 #include <pcor/numerics/line_fit.hpp>
 #include "campaign/gps_rows.hpp"
+#include "diagnose/findings.hpp"
 #include "diagnose/flight_steps.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/structure.hpp"
@@ -440,9 +441,8 @@ std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vec
 /// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
 /// clearly predict held-out parts may be one.
 void doubt_by_atmosphere(Diagnosis& diagnosis) {
-  constexpr double clear = 3.0;  // standard errors
   for (Finding& finding : diagnosis.findings) {
-    if (finding.gain > clear * finding.gain_error) continue;
+    if (predicts_held_out_parts(finding)) continue;
     finding.rival = "the atmosphere";
     diagnosis.notes.push_back(warning_note(fmt::format(
         "variations of the atmosphere may be the cause instead of {}: it decreases chi2 of held-out parts "

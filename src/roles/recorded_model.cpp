@@ -41,8 +41,8 @@ std::optional<ModelDefinition> recorded_model(const Flight& flight) {
       model.model.recovery = published_recovery_factor(thermometer->recovery)->law;
     }
   }
-  model.model.moist = take(Quantity::vapor_pressure) || take(Quantity::dew_point) ||
-                      take(Quantity::frost_point);
+  model.model.moist =
+      take(Quantity::vapor_pressure) || take(Quantity::dew_point) || take(Quantity::frost_point);
   return model;
 }
 

@@ -206,7 +206,7 @@ class Diagnose(DiagnosisTest):
 
     def test_a_shape_outside_the_model_format_is_reported(self):
         """Both total lines lag behind."""
-        scenario = self.write("scenario.toml", with_effect('id = "total-lag"\ntau = 3.0\n')(SCENARIO))
+        scenario = self.write("scenario.toml", with_effect('id = "total-lag"\ntau = 1.9\n')(SCENARIO))
         self.done("simulate", scenario, "-o", self.path / "flight.nc", "--quiet")
         self.model()
         text = self.done("diagnose", "flight.nc", "-m", "model.toml", "--no-file-variables", cwd=self.path).stdout

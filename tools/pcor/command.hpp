@@ -18,8 +18,8 @@ namespace pcor::tool {
 struct CommonOptions {
   std::string json{};  ///< destination of the machine-readable result, `-` for standard output; empty if not
                        ///< requested
-  std::string report{};   ///< destination of the self-contained HTML report; empty if not requested
-  bool quiet = false;  ///< no output for people
+  std::string report{};  ///< destination of the self-contained HTML report; empty if not requested
+  bool quiet = false;    ///< no output for people
 };
 
 /// Adds an option that takes one value and may be repeated. It never takes a second word, so that flights may

@@ -231,8 +231,7 @@ std::vector<ProcessTask> tasks_of(const ProcessArguments& options, bool folder) 
     task.history = command_line(task, options);
     std::vector<fs::path> inputs = models;
     inputs.push_back(task.input);
-    refuse_overwriting({task.output, options.common.json, options.common.report},
-                       inputs);
+    refuse_overwriting({task.output, options.common.json, options.common.report}, inputs);
   }
   return tasks;
 }

@@ -19,8 +19,8 @@ struct ReportFiles {
   std::string next{};  ///< "To apply it: pcor process ..."; may be empty
 };
 
-/// Writes the report named by the options, with its provenance at the foot: the command, the date, the program,
-/// and the files. @throws Error as does `write_report`.
+/// Writes the report named by the options, with its provenance at the foot: the command, the date, the
+/// program, and the files. @throws Error as does `write_report`.
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options);
 
 }  // namespace pcor::tool

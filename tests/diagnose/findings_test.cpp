@@ -1,0 +1,31 @@
+#include "diagnose/findings.hpp"
+
+#include <gmock/gmock.h>
+
+#include <tuple>
+
+using pcor::Diagnosis;
+using pcor::Finding;
+
+TEST(DoubtBySize, EffectOfImpossibleSizeHasAnUnknownErrorAsRival) {
+  for (const auto& [times_usual, gain, is_doubted] :
+       {std::tuple{19.0, 10.0, false}, {21.0, 10.0, true}, {98.0, 29.0, true}, {98.0, 31.0, false}}) {
+    Diagnosis diagnosis;
+    Finding& finding = diagnosis.findings.emplace_back();
+    finding.effect.id = "flaps-gear";
+    finding.times_usual = times_usual;
+    finding.gain = gain;
+    finding.gain_error = 10.0;
+    pcor::internal::doubt_by_size(diagnosis);
+    EXPECT_EQ(diagnosis.findings[0].rival.empty(), !is_doubted) << times_usual << ' ' << gain;
+    EXPECT_EQ(diagnosis.notes.empty(), !is_doubted);
+  }
+}
+
+TEST(DoubtBySize, KnownRivalIsKept) {
+  Diagnosis diagnosis;
+  diagnosis.findings.emplace_back().times_usual = 50.0;
+  diagnosis.findings[0].rival = "the atmosphere";
+  pcor::internal::doubt_by_size(diagnosis);
+  EXPECT_EQ(diagnosis.findings[0].rival, "the atmosphere");
+}
