@@ -20,19 +20,21 @@ inline std::string text_of_number(double value) {
   return text.data();
 }
 
+inline std::string fault_of(const ParameterInfo& parameter, const std::string& effect, double value) {
+  const std::string unit = parameter.unit == "1" ? "" : " " + std::string(parameter.unit);
+  return "the coefficient '" + std::string(parameter.name) + "' of " + effect + " is " +
+         text_of_number(value) + unit + "; give " + text_of_number(parameter.lower) + " to " +
+         text_of_number(parameter.upper) + unit;
+}
+
 inline std::string fault_of(const ModelEffect& effect) {
   const EffectInfo* const info =
       effect.is_formula() || effect.is_surface() ? nullptr : effect_named(effect.id);
   const std::string end = " of effect '" + effect.id + "'";
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     const double value = effect.parameters[i];
-    if (info != nullptr && i < info->parameter_count() && !info->parameters[i].allows(value)) {
-      const ParameterInfo& parameter = info->parameters[i];
-      const std::string unit = parameter.unit == "1" ? "" : " " + std::string(parameter.unit);
-      return "the coefficient '" + std::string(parameter.name) + "' of " + effect.id + " is " +
-             text_of_number(value) + unit + "; give " + text_of_number(parameter.lower) + " to " +
-             text_of_number(parameter.upper) + unit;
-    }
+    if (info != nullptr && i < info->parameter_count() && !info->parameters[i].allows(value))
+      return fault_of(info->parameters[i], effect.id, value);
     if (!is_finite(value)) {
       return "coefficient number " + std::to_string(i + 1) + end + " is " + text_of_number(value) +
              "; give a finite number";
