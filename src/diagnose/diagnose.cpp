@@ -324,7 +324,6 @@ std::string Finding::id() const { return of_reference ? id_on_other_system(syste
 namespace {
 
 bool may_be_of(bool reference, const Finding& finding) {
-  constexpr double min_probability = 0.01;
   return finding.of_reference == reference ||
          std::any_of(finding.aliases.begin(), finding.aliases.end(), [reference](const Alias& alias) {
            return alias.probability >= min_probability &&

@@ -31,6 +31,9 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
 std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                   const std::vector<Finding>& findings);
 
+/// Probability from which a rival of a finding is considered as a cause and in the correction.
+inline constexpr double min_probability = 0.01;
+
 /// Whether a finding predicts held-out parts: their chi2 decreases by more than three standard errors.
 inline bool predicts_held_out_parts(const Finding& finding) {
   return finding.gain > 3.0 * finding.gain_error;

@@ -11,6 +11,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include "diagnose/finding_page.hpp"
+#include "diagnose/findings.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
 #include "residuals/flight_statistics.hpp"
@@ -22,8 +23,6 @@ namespace {
 constexpr double unnamed_limit = 0.99;
 // Tolerated growth of the fit's rms, because the fit weighs samples by their noise and ignores outliers.
 constexpr double fit_limit = 1.005;
-// Minimum probability of rivals considered in the correction.
-constexpr double min_probability = 0.01;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
 constexpr double negligible = 0.05;
 

@@ -154,9 +154,7 @@ class Processing {
     std::vector<bool> flying;
     for (const Input& input : inputs_) {
       if (input.quantity != Quantity::dynamic_pressure) continue;
-      for (const double q : read(input))
-        flying.push_back(is_missing(q) ? !flying.empty() && flying.back()
-                                       : q >= summary_.flying_dynamic_pressure);
+      flying = in_flight(read(input), summary_.flying_dynamic_pressure);
     }
     std::vector<double> time;
     for (Input& input : inputs_) {

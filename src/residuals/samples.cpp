@@ -249,9 +249,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
 }
 
 void internal::mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double min_airspeed) {
-  std::vector<bool> flying;
-  for (const double airspeed : samples.motion.airspeed)
-    flying.push_back(is_missing(airspeed) ? !flying.empty() && flying.back() : airspeed >= min_airspeed);
+  const std::vector<bool> flying = in_flight(samples.motion.airspeed, min_airspeed);
   ModelSamples& read = samples.*part;
   for (const auto& [quantity, variable] : read.variables) {
     const std::vector<double>& values = *read.find(quantity);

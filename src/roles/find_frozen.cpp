@@ -150,6 +150,13 @@ std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& v
   return frozen;
 }
 
+std::vector<bool> in_flight(const std::vector<double>& speed, double minimum) {
+  std::vector<bool> flying;
+  for (const double value : speed)
+    flying.push_back(is_missing(value) ? !flying.empty() && flying.back() : value >= minimum);
+  return flying;
+}
+
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,
                         const std::vector<double>& time, const std::vector<Segment>& frozen) {
   std::vector<std::string> spans;

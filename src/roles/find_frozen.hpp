@@ -29,6 +29,9 @@ std::vector<Segment> find_frozen(const std::vector<double>& values, const std::v
 std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& values,
                                  const std::vector<bool>& flying);
 
+/// True where a speed, or a dynamic pressure, is at least `minimum`; a missing value is like the last one.
+std::vector<bool> in_flight(const std::vector<double>& speed, double minimum);
+
 /// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,
                         const std::vector<double>& time, const std::vector<Segment>& frozen);

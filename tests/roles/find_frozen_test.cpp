@@ -140,3 +140,9 @@ TEST(Frozen, ZeroLiquidWaterIsNotFrozen) {
   freeze(values, 5000, 100);
   EXPECT_EQ(find_frozen(pcor::Quantity::liquid_water, values, all).size(), 1U) << "another value can be";
 }
+
+TEST(InFlight, MissingValueIsLikeTheLastOne) {
+  const double missing = std::nan("");
+  EXPECT_EQ(pcor::internal::in_flight({missing, 10.0, 20.0, missing, 30.0, 10.0, missing}, 20.0),
+            std::vector<bool>({false, false, true, true, true, false, false}));
+}
