@@ -28,7 +28,8 @@ struct Host {
 
 using System = NimbusSystem<Host, struct Tag>;
 
-/// The same variables by callbacks in a table: delta-p, and each of the six from the leader's run.
+/// The same variables from a table of callbacks: the first computes delta-p and all six, the others fetch
+/// them.
 void chain_adapter(benchmark::State& timing) {
   using namespace nimbus_model;
   const Flight flight = make_flight(4500);

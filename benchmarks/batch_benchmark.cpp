@@ -8,7 +8,7 @@
 namespace pcor::benchmarks {
 namespace {
 
-/// The six variables over a whole flight at once. `items_per_second` counts samples.
+/// The same variables for a whole flight in one call. `items_per_second` counts samples.
 void chain_batch(benchmark::State& timing) {
   const Flight flight = make_flight(4500);
   const Batch batch(gv_2014(), recorded_roles());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t flight_samples = 4500;
 
-/// Cost of the six variables in the style of nimbus: a table of functions that each repeat the calculation.
+/// Six variables in the style of nimbus: a table of functions, each of which repeats the calculation.
 void chain_nimbus_model(benchmark::State& timing) {
   const Flight flight = make_flight(flight_samples);
   const std::vector<nimbus_model::Derivation> chain = nimbus_model::chain();
@@ -30,7 +30,7 @@ void chain_nimbus_model(benchmark::State& timing) {
 }
 BENCHMARK(chain_nimbus_model);
 
-/// The same variables by the sample loop, with delta-p and the quality bits.
+/// The same variables from the sample loop, with delta-p and quality bits.
 void run_loop(benchmark::State& timing, const Model& model, const std::vector<Quantity>& recorded,
               const ModelUncertainty& uncertainty) {
   const Flight flight = make_flight(flight_samples);
@@ -55,7 +55,7 @@ void run_loop(benchmark::State& timing, const Model& model, const std::vector<Qu
   }
 }
 
-/// Uncertainties of all coefficients, correlated, of the pressures and of the thermometer.
+/// Correlated uncertainties of all coefficients, and noise of the pressures and the thermometer.
 ModelUncertainty uncertainty_of(const Model& model) {
   const std::size_t count = model.effects.size();
   ModelUncertainty uncertainty;
@@ -75,7 +75,7 @@ std::vector<Quantity> c130_roles() {
           Quantity::radome_dynamic_pressure, Quantity::attack_differential_pressure};
 }
 
-/// Equation 18 of the memo on the C-130.
+/// Equation 18 of Cooper (2012) for the C-130.
 Model equation_18() {
   Model model;
   model.effects = {
@@ -87,7 +87,6 @@ Model equation_18() {
 void chain_scalar(benchmark::State& timing) { run_loop(timing, gv_2014(), recorded_roles(), {}); }
 BENCHMARK(chain_scalar);
 
-/// Six variables with the uncertainties of the results.
 void chain_uncertainty(benchmark::State& timing) {
   run_loop(timing, gv_2014(), recorded_roles(), uncertainty_of(gv_2014()));
 }

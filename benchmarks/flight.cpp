@@ -17,7 +17,7 @@ Flight make_flight(std::size_t samples) {
   Flight flight;
   for (std::size_t i = 0; i < samples; ++i) {
     const double x = static_cast<double>(i) / static_cast<double>(samples);
-    // A climb over the first fifth and a descent over the last one; steps of the cruising level between.
+    // Climb in the first fifth, descent in the last fifth; the cruising level varies between them.
     const double climbed = std::min({1.0, 5.0 * x, 5.0 * (1.0 - x)});
     const double p = 1000.0 - climbed * (760.0 + 40.0 * std::sin(20.0 * x)) + 0.05 * noise(random);
     const double mach = 0.2 + 0.58 * climbed + 0.002 * noise(random);

@@ -8,8 +8,7 @@
 
 namespace pcor::benchmarks {
 
-/// A made-up jet flight, sample after sample: take-off, climb to 200 hPa, level legs and descent, through
-/// clear air and cloud, with turbulence and noise.
+/// Synthetic flight of a jet: climb to 200 hPa, level legs and descent through humid and dry air, with noise.
 struct Flight {
   std::vector<double> static_pressure;       // hPa
   std::vector<double> dynamic_pressure;      // hPa
@@ -20,16 +19,16 @@ struct Flight {
 
   std::size_t size() const { return static_pressure.size(); }
 
-  /// The arrays of `recorded_roles`.
+  /// Arrays of the `recorded_roles`.
   std::vector<Batch::Input> inputs() const;
 };
 
 Flight make_flight(std::size_t samples);
 
-/// The roles of the flight's arrays, without LAMS.
+/// Roles of the arrays of a flight, except LAMS.
 std::vector<Quantity> recorded_roles();
 
-/// The static defect of the GV of 2014 with an unheated Rosemount thermometer, in moist air.
+/// Static defect of the GV of 2014 with an unheated Rosemount thermometer, in moist air.
 Model gv_2014();
 
 }  // namespace pcor::benchmarks

@@ -9,7 +9,7 @@
 namespace pcor::benchmarks {
 namespace {
 
-/// Delta-p of one sample by a model of one effect.
+/// Delta-p of one sample from a model with one effect.
 void static_defect(benchmark::State& timing, const ModelEffect& effect) {
   Model model;
   model.effects = {effect};
@@ -27,12 +27,10 @@ void static_defect(benchmark::State& timing, const ModelEffect& effect) {
   }
 }
 
-void effect_of_the_catalogue(benchmark::State& timing) {
-  static_defect(timing, {"static-mach3", {-0.087508}});
-}
-BENCHMARK(effect_of_the_catalogue);
+void catalogue_effect(benchmark::State& timing) { static_defect(timing, {"static-mach3", {-0.087508}}); }
+BENCHMARK(catalogue_effect);
 
-void effect_by_formula(benchmark::State& timing) {
+void formula_effect(benchmark::State& timing) {
   ModelEffect effect;
   effect.id = "mach-cubed";
   effect.parameters = {-0.087508};
@@ -40,7 +38,7 @@ void effect_by_formula(benchmark::State& timing) {
   effect.formula = "m3 * mach^3 * static_pressure";
   static_defect(timing, effect);
 }
-BENCHMARK(effect_by_formula);
+BENCHMARK(formula_effect);
 
 }  // namespace
 }  // namespace pcor::benchmarks

@@ -6,7 +6,7 @@
 namespace pcor::benchmarks {
 namespace {
 
-/// Delta-p from LAMS for one sample by `solve`.
+/// Runs `solve`, a method for delta-p from LAMS, on one sample at a time.
 template <class Solve>
 void lams(benchmark::State& timing, const Solve& solve) {
   const Flight flight = make_flight(4500);

@@ -9,7 +9,7 @@ namespace {
 constexpr double gas_constant_dry_air = 8314.472 / 28.9637;
 constexpr double molar_mass_ratio = 18.0153 / 28.9637;
 
-// Air of the last sample with a valid humidity.
+// Gas constants of the moist air of the last sample.
 double gas_constant = gas_constant_dry_air;
 double specific_heat_pressure = 3.5 * gas_constant_dry_air;
 double specific_heat_volume = 2.5 * gas_constant_dry_air;
@@ -22,7 +22,7 @@ void put(const Derivation& derivation, Sample& sample, double value) { sample[de
 
 double dry_mach_squared(double p, double q) { return 5.0 * (std::pow(1.0 + q / p, 2.0 / 7.0) - 1.0); }
 
-// The static defect of the GV, 2014, in hPa.
+// Static defect of the GV of 2014, hPa.
 double static_defect(double p, double q, double attack) {
   if (std::isnan(attack)) attack = 3.0;
   const double mach = std::sqrt(dry_mach_squared(p, q));
@@ -36,7 +36,7 @@ double recovery_factor(double mach) {
   return 0.9959 + logarithm * (0.0283 + logarithm * (0.0374 + logarithm * 0.0762));
 }
 
-// Murphy and Koop 2005, eq. 10, in hPa.
+// Murphy and Koop (2005), eq. 10, hPa.
 double saturation_vapor_pressure(double temperature) {
   return 0.01 *
          std::exp(
@@ -64,7 +64,8 @@ void mach_number(const Derivation& self, Sample& sample) {
   put(self, sample, std::sqrt(2.0 * specific_heat_volume / gas_constant * heating));
 }
 
-// The humidity, not above saturation, at a temperature found with dry air; sets the gas constants.
+// Vapor pressure, at most saturation at the temperature of dry air, over static pressure. Sets the gas
+// constants.
 void humidity(const Derivation& self, Sample& sample) {
   const double q = get(self, sample, 0);
   const double p = get(self, sample, 1);

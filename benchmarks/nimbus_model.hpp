@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-/// A plain model of how NCAR's nimbus derives variables: a table of functions, each of which fetches its
-/// inputs by index, recomputes all intermediate values, and stores its output by index. The gas constants
-/// are globals, set by one function and used by others. The file contains no code of nimbus. Nimbus's six
-/// functions, compiled separately in their original loop, took 1.2 times as long on one machine (213 ns to
-/// 176 ns a sample, g++ 12, -O2, law of the C-130 of 2016).
+/// Model of the derivation of variables in NCAR's nimbus; it contains no code of nimbus. A table of
+/// functions: each fetches its inputs by index, recomputes all intermediate values, and stores its output by
+/// index. The gas constants are globals that one function sets and others read. Cost of the law of the C-130
+/// of 2016 on one machine with g++ 12, -O2: 176 ns per sample; the six functions of nimbus, compiled
+/// separately in their original loop, need 213 ns.
 namespace nimbus_model {
 
 enum Variable : std::size_t {
@@ -27,10 +27,10 @@ enum Variable : std::size_t {
   variable_count
 };
 
-/// The values of one sample.
+/// Values of one sample.
 using Sample = std::array<double, variable_count>;
 
-/// A derived variable: the function that computes it, where its inputs are, where its output goes.
+/// Derived variable: function, indices of the inputs in the sample, index of the output.
 struct Derivation {
   void (*compute)(const Derivation&, Sample&);
   std::vector<std::size_t> inputs;
@@ -38,7 +38,7 @@ struct Derivation {
 };
 
 /// Corrected static and dynamic pressure, Mach number, humidity, ambient temperature and true airspeed, in
-/// the order in which they depend on each other.
+/// the order of their dependencies.
 std::vector<Derivation> chain();
 
 }  // namespace nimbus_model

@@ -1,5 +1,5 @@
-# The site: cmake --build build/release --target documentation writes build/release/html from the documents, the reference pages
-# that the program prints, and the public headers. It needs Doxygen.
+# Documentation site: cmake --build build/release --target documentation writes build/release/html from the documents, the
+# reference pages printed by the tool, and the public headers. Needs Doxygen.
 find_package(Doxygen QUIET)
 find_package(Python3 3.9 QUIET COMPONENTS Interpreter)
 if(DOXYGEN_FOUND AND Python3_FOUND AND TARGET pcor_tool)
@@ -8,7 +8,7 @@ if(DOXYGEN_FOUND AND Python3_FOUND AND TARGET pcor_tool)
     COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/tools/reference_pages $<TARGET_FILE:pcor_tool> ${reference}
     DEPENDS pcor_tool ${PROJECT_SOURCE_DIR}/tools/reference_pages VERBATIM)
 
-  # With the Python package and nbconvert: the notebooks with their results, on the real flight if PCOR_FLIGHTS has it.
+  # With the Python package: executed notebooks. Needs nbconvert. PCOR_FLIGHTS names the folder of the real flight.
   set(notebooks)
   if(TARGET pcor_python)
     find_package(Python 3.9 REQUIRED COMPONENTS Interpreter)

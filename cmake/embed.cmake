@@ -1,9 +1,9 @@
-# Turns text files into a C++ source file.
+# Embeds text files in a C++ source file.
 #
 #   pcor_embed(TARGET OUTPUT NAMESPACE NAME FILE... [NAME FILE...]...)
 #
-# adds to TARGET a source OUTPUT that defines, in NAMESPACE, `extern const std::string_view NAME` as the FILEs one
-# after another. A word with a dot is a file (relative to the current source directory); any other is a name.
+# Adds the source OUTPUT to TARGET. It defines `extern const std::string_view NAME` in NAMESPACE: the concatenation of the
+# FILEs. An argument with a dot is a file, relative to the current source directory; other arguments are names.
 if(NOT CMAKE_SCRIPT_MODE_FILE)
   set(pcor_embed_script ${CMAKE_CURRENT_LIST_FILE})
 

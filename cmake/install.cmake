@@ -1,5 +1,5 @@
-# Files that `cmake --install` copies. Three export sets, so that a program on the aircraft, which needs only
-# pcor::realtime and the standard library, never needs netCDF to find the package.
+# Installation. Each library has its own export set, so that find_package does not require netCDF for a program on the
+# aircraft, which uses pcor::realtime only.
 include(CMakePackageConfigHelpers)
 set(pcor_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcor)
 
@@ -32,7 +32,7 @@ if(TARGET pcor_tool)
   endif()
 endif()
 
-# Headers of modules that are not built would declare functions that cannot be linked.
+# Headers of modules that are not built are excluded: their functions could not be linked.
 set(pcor_headers ${pcor_realtime_modules})
 if(PCOR_MODEL)
   list(APPEND pcor_headers ${pcor_model_modules})
@@ -54,12 +54,13 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PR
               ${PROJECT_SOURCE_DIR}/CONTRIBUTING.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# The pages and pictures that the documents link to, and the site if it was made.
+# Pages and pictures linked from the documents; the documentation site if it was built.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data DESTINATION ${CMAKE_INSTALL_DOCDIR}
         FILES_MATCHING PATTERN "*.md" PATTERN "*.svg")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/html DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)
 
-# For programs that are not built by CMake. What a static library needs is linked without the option --static, too.
+# pkg-config files for programs not built with CMake. A static build lists its dependencies as public, so that the option
+# --static is not needed.
 if(BUILD_SHARED_LIBS)
   set(pcor_private_requires "\nRequires.private:")
   set(pcor_private_libs "\nLibs.private:")

@@ -1,4 +1,4 @@
-# Dependencies of the library of model files. Used by the build and by the installed package.
+# Dependencies of pcor::model. Used by the build and by the installed package.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(udunits REQUIRED IMPORTED_TARGET udunits)
 find_package(tomlplusplus REQUIRED)

@@ -1,4 +1,4 @@
-# `cpack` builds a Debian package of the files that `cmake --install` copies.
+# `cpack` builds a Debian package of the installed files.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME pcor)
 set(CPACK_PACKAGE_CONTACT "The pcor developers")

@@ -22,7 +22,7 @@ namespace py = pybind11;
 namespace pcor {
 namespace {
 
-/// Values of a sample series: contiguous doubles of any shape. An array of that kind is not copied.
+/// Contiguous doubles of any shape. pybind11 does not copy an array that has this form.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 CorrectWith correct_with(const std::string& name) {
@@ -39,7 +39,7 @@ Quantity known_quantity(const std::string& name) {
   return quantity;
 }
 
-/// The quantities among the names; names of other variables are left to formulas.
+/// Quantities among the names. Other names belong to variables of formulas.
 std::vector<Quantity> quantities_among(const std::vector<std::string>& names) {
   std::vector<Quantity> quantities;
   for (const std::string& name : names) {
@@ -49,8 +49,8 @@ std::vector<Quantity> quantities_among(const std::vector<std::string>& names) {
   return quantities;
 }
 
-/// Of a recorded value of a model: the quantity called `name`, or the variable of that name in a formula.
-/// @throws Error if it is neither
+/// Quantity of a recorded input: the formula variable `name`, otherwise the quantity `name`.
+/// @throws Error if there is neither
 Quantity input_named(const std::string& name, const std::vector<std::string>& extra_names) {
   const auto extra = std::find(extra_names.begin(), extra_names.end(), name);
   if (extra != extra_names.end())
@@ -63,13 +63,13 @@ std::string name_of(Quantity quantity, const std::vector<std::string>& extra_nam
   return extra_names[extra_number(quantity)];
 }
 
-/// The results that a user wants who names none.
-constexpr std::array usual_results{
+/// Default results of arrays.
+constexpr std::array default_results{
     Quantity::static_defect,      Quantity::corrected_static_pressure, Quantity::corrected_dynamic_pressure,
     Quantity::corrected_mach,     Quantity::ambient_temperature,       Quantity::corrected_airspeed,
     Quantity::lams_static_defect, Quantity::lams_temperature,          Quantity::lams_dynamic_pressure};
 
-/// A model over whole arrays.
+/// Model evaluated on arrays.
 class ArrayModel {
  public:
   ArrayModel(const ModelDefinition& model, const std::vector<std::string>& recorded, const std::string& with)
@@ -81,10 +81,10 @@ class ArrayModel {
     return names;
   }
 
-  /// The results that are found, of those that are usual.
+  /// Default results that the inputs determine.
   std::vector<std::string> outputs() const {
     std::vector<std::string> names;
-    for (const Quantity output : usual_results) {
+    for (const Quantity output : default_results) {
       if (batch_.finds(output)) names.emplace_back(info_of(output).name);
     }
     return names;
@@ -127,7 +127,7 @@ class ArrayModel {
   Batch batch_;
 };
 
-/// A sample loop with names in place of quantities.
+/// Sample loop with named inputs and results.
 class NamedLoop {
  public:
   NamedLoop(const ModelDefinition& model, const std::vector<std::string>& recorded, double rate,
@@ -141,7 +141,7 @@ class NamedLoop {
     }
   }
 
-  /// Values that are not given count as missing.
+  /// Inputs that are not given are missing.
   py::dict run(double time, const std::map<std::string, double>& values) {
     State<double>& state = loop_.state();
     for (const Quantity input : inputs_) state[input] = missing<double>();
@@ -149,7 +149,7 @@ class NamedLoop {
       const Quantity quantity = input_named(name, loop_.extra_names());
       if (std::find(inputs_.begin(), inputs_.end(), quantity) == inputs_.end()) {
         throw Error(Error::Code::variable,
-                    "'" + name + "' is not among the recorded quantities of this loop; name it there");
+                    "'" + name + "' is not a recorded quantity of this loop; add it to `recorded`");
       }
       state[quantity] = value;
     }
@@ -181,7 +181,7 @@ class NamedLoop {
   std::vector<Quantity> shown_;
 };
 
-/// The coefficients by names like "static-qp.a2".
+/// Coefficients by name, such as "static-qp.a2".
 std::map<std::string, double> parameters_of(const ModelDefinition& model) {
   std::map<std::string, double> values;
   for (const ModelEffect& effect : model.model.effects) {
@@ -196,7 +196,7 @@ ModelDefinition with_parameters(ModelDefinition model, const std::map<std::strin
   for (const auto& [name, value] : values) {
     if (known.count(name) == 0) {
       throw Error(Error::Code::model, "model '" + model.model.name + "' has no coefficient '" + name +
-                                          "'; its parameters are named like 'static-qp.a2'");
+                                          "'; names have the form 'static-qp.a2'");
     }
   }
   for (ModelEffect& effect : model.model.effects) {
@@ -215,7 +215,7 @@ std::map<std::string, std::string> by_role(const std::map<Quantity, std::string>
   return named;
 }
 
-/// Makes every error of the library a `pcor.Error`.
+/// Converts errors of the library to `pcor.Error`.
 void translate(std::exception_ptr error) {
   try {
     if (error) std::rethrow_exception(error);

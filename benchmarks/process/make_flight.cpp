@@ -1,4 +1,4 @@
-// Writes a made-up flight of many hours with 25 samples in a second, as large as those of a jet:
+// Writes a synthetic flight of 25 samples per second, with as many variables as a file of a jet:
 //
 //   make_flight classic|netcdf4 HOURS OUT.nc
 #include <netcdf.h>
@@ -27,7 +27,7 @@ void put_text(int file, int variable, const char* name, const std::string& text)
   check(nc_put_att_text(file, variable, name, text.size(), text.c_str()));
 }
 
-/// One variable of the file, all of its samples.
+/// One variable of the file with all samples.
 struct Variable {
   std::string name;
   std::string units;
@@ -99,7 +99,7 @@ void write(const std::string& kind, std::size_t seconds, const char* path) {
   }
   put_text(file, NC_GLOBAL, "Conventions", "NCAR-RAF/nimbus-2.0,CF-1.6");
   put_text(file, NC_GLOBAL, "platform", "N677F");
-  put_text(file, NC_GLOBAL, "title", "A made-up flight, not a measurement");
+  put_text(file, NC_GLOBAL, "title", "Synthetic flight, not a measurement");
   check(nc_enddef(file));
   std::vector<int> times;
   for (std::size_t i = 0; i < seconds; ++i) times.push_back(static_cast<int>(i));

@@ -1,5 +1,5 @@
-// Ten million samples through the batch kernels, for benchmarks/python/benchmark: arrays MODEL.toml. Prints
-// the least time of ten runs, s: into new arrays, and into the same ones again.
+// Corrects ten million samples with the batch kernels, for benchmarks/python/benchmark: arrays MODEL.toml.
+// Prints the minimum time of ten runs, s, first with new output arrays, then with reused ones.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -31,13 +31,13 @@ int main(int argc, char** argv) {
       Quantity::static_defect,  Quantity::corrected_static_pressure, Quantity::corrected_dynamic_pressure,
       Quantity::corrected_mach, Quantity::ambient_temperature,       Quantity::corrected_airspeed};
   std::vector<std::unique_ptr<double[]>> arrays(results.size());
-  for (const bool anew : {true, false}) {
+  for (const bool new_arrays : {true, false}) {
     double minimum = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 10; ++i) {
       const auto begin = std::chrono::steady_clock::now();
       std::vector<pcor::Batch::Output> outputs;
       for (std::size_t k = 0; k < results.size(); ++k) {
-        if (anew || arrays[k] == nullptr) arrays[k].reset(new double[samples]);
+        if (new_arrays || arrays[k] == nullptr) arrays[k].reset(new double[samples]);
         outputs.push_back({results[k], arrays[k].get()});
       }
       batch.run(inputs, outputs, samples);

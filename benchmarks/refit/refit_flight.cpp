@@ -1,10 +1,11 @@
-// Refits equation 20 of the memo to made-up flights of the GV in memory, and says how long that took:
+// Refits equation 20 of Cooper (2012) to synthetic flights of the GV in memory and measures the time:
 //
 //   refit_flight SAMPLES [--flight SAMPLES] [--threads N] [--memory MIB] [--write FOLDER]
 //
-// The samples are parted into flights of ten hours at one sample in a second unless --flight says otherwise.
-// The answer is a line of JSON: seconds of the refit alone, the most memory that the program held, MiB, and
-// the coefficients with their standard errors. --write puts the arrays into files of 64-bit floats.
+// --flight is the number of samples per flight (default 36000, 10 hours at 1 Hz). The output is a line of
+// JSON: seconds of the refit, peak memory of the program in MiB, and the coefficients with their standard
+// errors.
+// --write writes the arrays to files of 64-bit floats.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -34,7 +35,9 @@ struct Arguments {
 
 Arguments read_arguments(const std::vector<std::string>& given) {
   Arguments result;
-  if (given.empty() || given.size() % 2 == 0) throw std::invalid_argument("give the number of samples");
+  if (given.empty() || given.size() % 2 == 0)
+    throw std::invalid_argument(
+        "the first argument must be the number of samples, followed by pairs of option and value");
   result.samples = std::stoul(given.front());
   for (std::size_t i = 1; i < given.size(); i += 2) {
     const std::string& option = given[i];
@@ -51,11 +54,12 @@ Arguments read_arguments(const std::vector<std::string>& given) {
       throw std::invalid_argument("unknown option " + option);
     }
   }
-  if (result.samples == 0 || result.flight == 0) throw std::invalid_argument("there have to be samples");
+  if (result.samples == 0 || result.flight == 0)
+    throw std::invalid_argument("numbers of samples must be positive");
   return result;
 }
 
-/// Equation 20 with neutral coefficients, as a fit finds it.
+/// Equation 20 with neutral coefficients, the start of the fit.
 pcor::ModelDefinition neutral_model() {
   pcor::ModelDefinition file;
   file.model.name = "equation 20";
@@ -72,15 +76,15 @@ double static_defect(double p, double q, double mach) {
   return p * (0.00696 + 0.6678 * q / p + mach * (-0.05965 + mach * (-0.2833 + mach * -0.2437)));
 }
 
-/// A flight of climb, cruise with steps of speed and height, and descent. Its Mach number is measured
-/// independently of the pressures, without which equation 20 has no solution; the reference has the scatter
-/// of the memo and one outlier in a hundred.
+/// Flight with climb, cruise at varying speed and height, and descent. The Mach number is measured
+/// independently of the pressures; otherwise equation 20 has no unique solution. The reference has the
+/// scatter stated in Cooper (2012), 0.28 hPa, and 1 % outliers.
 std::shared_ptr<const pcor::FlightSamples> make_flight(std::size_t samples, double begin,
                                                        std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   auto flight = std::make_shared<pcor::FlightSamples>();
-  flight->name = "made-up";
+  flight->name = "synthetic";
   flight->aircraft = "N677F";
   std::vector<double> static_pressure(samples);
   std::vector<double> dynamic_pressure(samples);
@@ -116,9 +120,9 @@ Flights make_flights(const Arguments& arguments) {
   constexpr double first_begin = 1.28e9;
   std::mt19937_64 random(20);
   Flights flights;
-  for (std::size_t made = 0; made < arguments.samples; made += arguments.flight) {
-    const std::size_t count = std::min(arguments.flight, arguments.samples - made);
-    flights.push_back(make_flight(count, first_begin + 1.5 * static_cast<double>(made), random));
+  for (std::size_t first = 0; first < arguments.samples; first += arguments.flight) {
+    const std::size_t count = std::min(arguments.flight, arguments.samples - first);
+    flights.push_back(make_flight(count, first_begin + 1.5 * static_cast<double>(first), random));
   }
   return flights;
 }
@@ -143,7 +147,7 @@ void write(const Flights& flights, const std::filesystem::path& folder) {
   }
 }
 
-/// The most memory that this program held, MiB. Not ru_maxrss, which a child has from its parent.
+/// Peak memory of this program, MiB. ru_maxrss is not used, because a child inherits it from its parent.
 double peak_memory() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {

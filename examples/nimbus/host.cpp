@@ -1,5 +1,5 @@
-// A host of callbacks: its record of the sample, its defaults, and its table of derived variables, which it
-// computes in the order of their dependencies at two rates.
+// Host with callbacks: record of a sample, defaults, and table of derived variables. The host computes the
+// variables at two rates, in the order of their dependencies.
 #include "host.hpp"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ std::size_t place_of(const std::string& name) {
   return found->second;
 }
 
-// Every result depends on PCOR; without this line a host drops it, or computes it a sample late.
+// Every result depends on PCOR. Without this dependency a host may omit a result or compute it one sample
+// late.
 std::vector<DERTBL> deriveftns{
     {"TASX", {"PCOR"}, stasx},
     {"PSXC", {"PCOR"}, spsxc},

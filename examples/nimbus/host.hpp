@@ -8,10 +8,10 @@
 
 enum FeedBackType { LOW_RATE_FEEDBACK, HIGH_RATE_FEEDBACK };
 
-/// Which of the two rates is being computed.
+/// Rate of the current computation.
 extern FeedBackType FeedBack;
 
-/// A derived variable: on which others it depends, and the function that computes it.
+/// Derived variable: its dependencies and the function that computes it.
 struct DERTBL {
   std::string name;
   std::vector<std::string> depends;
@@ -24,6 +24,6 @@ struct DERTBL {
 float GetSample(const DERTBL* entry, std::size_t input);
 void PutSample(const DERTBL* entry, float value);
 
-/// Value of the named entry in the defaults file, which keeps names in capitals; null if it is absent.
+/// Value of an entry in the defaults file; nullptr if it is absent. Names in the file are in capitals.
 const float* GetDefault(const char* name);
 std::vector<std::string> DefaultNames();

@@ -1,4 +1,4 @@
-// All that a host has to write to have pcor in its table of derived variables.
+// Code that a host needs for pcor in its table of derived variables.
 #include "pcor_callbacks.hpp"
 
 #include <pcor/realtime/nimbus.hpp>

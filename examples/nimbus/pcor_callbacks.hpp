@@ -4,11 +4,11 @@
 
 #include "host.hpp"
 
-/// Sets the correction up, before the first sample and before the order of the table is found. Returns false
-/// on failure; `error` states the reason.
+/// Prepares the correction. Call it before the first sample and before the host orders its table. Returns
+/// false on failure; `error` states the reason.
 bool pcor_install(std::string* error);
 
-/// Discards earlier samples: call it at the start of a flight and after a gap.
+/// Discards earlier samples. Call it at the start of a flight and after a gap.
 void pcor_reset();
 
 // Names for the table of derived variables: plain C functions, because the table has no templates.

@@ -1,4 +1,4 @@
-// A derived variable of the host in a sample loop: the potential temperature, K.
+// Adds a derived variable of the host to a sample loop: potential temperature, K.
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,4 @@
-"""The tool: `python -m pcor refit ...`, and the command `pcor` of an environment."""
+"""Runs the tool: `python -m pcor refit ...`, or the command `pcor` of an environment."""
 
 import os
 import sys

@@ -87,7 +87,7 @@ def diagnose(flights: Flights, *, model: ModelLike, **options: Any) -> Result:
 
 
 def improve(flights: Flights, *, model: ModelLike, output: Optional[PathLike] = None, **options: Any) -> Result:
-    """Refits, diagnoses and adds missing effects in turn. `fitted_model` of the result is the new model."""
+    """Refits, diagnoses and adds missing effects, one at a time. `fitted_model` of the result is the new model."""
     return _call("improve", flights, {"model": model, "output": output, **options}, "best.toml")
 
 
@@ -133,7 +133,7 @@ def help(command: str) -> str:
 
 
 def _describe() -> None:
-    """Gives each command its docstring and its options by name, which editors complete."""
+    """Sets docstring and signature of each command, so that editors complete the options."""
     for name, (text, options) in descriptions.items():
         command = globals()[name]
         command.__doc__ = text

@@ -15,10 +15,10 @@ from ._flight import PathLike, values
 from ._tool import data
 
 quantities: dict[str, tuple[str, str, bool]] = _pcor.quantities
-"""Unit, description, and whether it is recorded (a role), of every quantity by name."""
+"""Quantities by name: unit, description, and True for a recorded quantity (a role)."""
 
 quality: dict[str, tuple[int, str]] = _pcor.quality
-"""Bit and meaning of every quality flag, by name."""
+"""Quality flags by name: bit and meaning."""
 
 standard_names = {
     "corrected_static_pressure": "air_pressure",
@@ -29,7 +29,7 @@ standard_names = {
 
 
 def model_folders() -> list[Path]:
-    """Folders in which models are found by name: those of the environment variable PCOR_MODELS, then the package."""
+    """Folders of models that have names: the folders in the environment variable PCOR_MODELS, then the package."""
     own = [Path(folder) for folder in os.environ.get("PCOR_MODELS", "").split(":") if folder]
     return [*own, data / "models"]
 
@@ -104,16 +104,16 @@ class Model:
                 correct_with: str = "model", **recorded: Any) -> Union[dict[str, np.ndarray], xr.Dataset]:
         """Corrected pressures, and the quantities that follow from them, for arrays of samples.
 
-        Give either `flight`, a dataset whose variables have the roles that the model or `roles`, {role: variable},
-        states; units are converted by their attribute `units`. Or give recorded quantities as arrays of one shape by
-        role, in the units of `pcor.quantities`, and variables of formulas by name:
+        Give either a dataset `flight` or arrays. The model names the variables of the dataset by role; `roles`,
+        {role: variable}, overrides it. Units are converted according to the attribute `units`. Arrays have one shape and
+        the units of `pcor.quantities`; give recorded quantities by role and variables of formulas by name:
 
             model.correct(static_pressure=ps, dynamic_pressure=qc, recovery_temperature=tr)
 
         Contiguous doubles are not copied. NaN is missing. The results have the shape of the inputs: a dict of arrays, or
         for a flight a dataset with units and CF names. `outputs` are names of `pcor.quantities`; by default delta-p
-        ("static_defect"), corrected pressures, Mach number, ambient temperature, airspeed, and the same quantities by
-        laser, if the inputs determine them. Results are written into the arrays of `out`, by name, if given: contiguous
+        ("static_defect"), corrected pressures, Mach number, ambient temperature, airspeed, and the same quantities from
+        the laser, if the inputs determine them. Results are written into the arrays of `out`, by name, if given: contiguous
         doubles of that shape that are not inputs. `correct_with` is "model" or "lams".
 
         There are no quality flags; effects of rates of change need the rates as inputs; `pcor.process` computes both.
@@ -222,7 +222,7 @@ class Loop:
         return self._loop.run(time, recorded)
 
     def reset(self) -> None:
-        """Forgets all previous samples."""
+        """Discards all previous samples."""
         self._loop.reset()
 
     @staticmethod

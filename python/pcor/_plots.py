@@ -15,8 +15,8 @@ from ._error import Error
 
 
 def _regimes(result: Any, ax: Any, model: int = 0) -> None:
-    of = result.models[model]
-    rows = [row for row in of.regimes if row.samples > 0 and row.bias_hpa is not None]
+    comparison = result.models[model]
+    rows = [row for row in comparison.regimes if row.samples > 0 and row.bias_hpa is not None]
     places = np.arange(len(rows))
     bias = np.array([row.bias_hpa for row in rows])
     error = np.array([row.bias_stderr_hpa or np.nan for row in rows])
@@ -26,15 +26,15 @@ def _regimes(result: Any, ax: Any, model: int = 0) -> None:
     ax.axvline(0, color="0.7", lw=0.8, zorder=0)
     ax.set_yticks(places, [row.name for row in rows])
     ax.invert_yaxis()
-    ax.set(xlabel=f"residual against {of.reference}, hPa", title=textwrap.fill(of.name, 60))
+    ax.set(xlabel=f"residual against {comparison.reference}, hPa", title=textwrap.fill(comparison.name, 60))
     ax.legend(fontsize="small")
 
 
 def _time(result: Any, ax: Any, model: int = 0) -> None:
-    for of, residuals in zip(result.models[model].flights, result.residuals()):
+    for flight, residuals in zip(result.models[model].flights, result.residuals()):
         residual = residuals[f"RESIDUAL_{model + 1}"]
         used = residual.where(residuals.MASK == 0)
-        ax.plot(used[used.dims[0]], used, ".", ms=1, label=of.name)
+        ax.plot(used[used.dims[0]], used, ".", ms=1, label=flight.name)
     ax.axhline(0, color="0.7", lw=0.8, zorder=0)
     ax.set(xlabel="time, UTC", ylabel="residual, hPa", title=textwrap.fill(result.models[model].name, 60))
     ax.legend(fontsize="small", markerscale=8)
@@ -43,16 +43,16 @@ def _time(result: Any, ax: Any, model: int = 0) -> None:
 def _variable(result: Any, ax: Any, variable: str = "", model: int = 0, bins: int = 12) -> None:
     x, y = [], []
     paths = {Path(word).name: word for word in result._arguments if not word.startswith("--")}
-    for of, residuals in zip(result.models[0].flights, result.residuals()):
-        with _flight.open(paths[of.name]) as flight:
+    for row, residuals in zip(result.models[0].flights, result.residuals()):
+        with _flight.open(paths[row.name]) as flight:
             if variable not in flight:
-                raise Error(f"{of.name} has no variable '{variable}'; give variable=NAME", "variable")
+                raise Error(f"{row.name} has no variable '{variable}'; give variable=NAME", "variable")
             used = residuals.MASK.values == 0
             values = flight[variable].values.astype(float)
             ax.set_xlabel(f"{variable}, {flight[variable].attrs.get('units', '')}")
         residual = residuals[f"RESIDUAL_{model + 1}"].values
         if values.shape != residual.shape:
-            raise Error(f"'{variable}' has another shape than the residuals; choose a variable of their rate",
+            raise Error(f"'{variable}' has a different rate from the residuals; choose a variable of the same rate",
                         "variable")
         x.append(values[used])
         y.append(residual[used])

@@ -37,7 +37,7 @@ class _Bar:
     def __init__(self) -> None:
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of notebooks without ipywidgets, where the bar is text
+                warnings.simplefilter("ignore")  # warning without ipywidgets; the bar is then text
                 from tqdm.auto import tqdm  # type: ignore[import-untyped]
         except ImportError:
             tqdm = None

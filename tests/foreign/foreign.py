@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Flights by another simulator than the project's, and what its judge says of the tool there.
+"""Tests the tool on flights of an independent simulator, with the scores of its judge.
 
     foreign.py TOOL [--share K/N] [--salt X]
 
-The environment variable PCOR_FOREIGN names the folder of that simulator, with simulate.py and judge.py; without it
-nothing is run, and the exit status is 77. The judge runs refit, diagnose, improve and process as a user would, and
-knows the truth. Fails where fewer cases are right than the wanted rates let expect.
+The environment variable PCOR_FOREIGN names the folder of the simulator, with simulate.py and judge.py; without it the exit
+status is 77. The judge runs refit, diagnose, improve and process and compares their results with the truth. The test fails
+if the number of correct cases is significantly below the required rate.
 """
 
 import argparse
@@ -18,8 +18,8 @@ import tempfile
 from pathlib import Path
 
 SKIPPED = 77  # exit status of a test that cannot run here
-CHANCE = 1e-3  # that a tool which has a wanted rate fails by luck with the flights
-VISIBLE = 0.1  # SNR
+CHANCE = 1e-3  # probability that a tool with the required rate fails by chance
+VISIBLE = 0.1  # min SNR of a visible effect
 OUTSIDE = ("unknown", "recorded")
 
 
@@ -37,7 +37,7 @@ def run(simulator, program, *arguments, **environment):
 
 
 def judged(tool, simulator, folder, salt, share="0/1", jobs=2):
-    """The judge's results, case by case, on the flights of a salt, which are made where they are not in `folder`."""
+    """Scores of the judge for each case of a salt. Simulates flights that are not in `folder`."""
     suite = Path(folder) / f"foreign-{salt}-{share.replace('/', '-of-')}"
     made = suite / "made"
     if not made.exists():
@@ -55,7 +55,7 @@ def judged(tool, simulator, folder, salt, share="0/1", jobs=2):
 
 
 def groups(cases):
-    """Cases by requirement: question, required rate, and selection."""
+    """Requirements: text, cases, required rate, and test of a case."""
     hard = [case for case in cases if case["id"].startswith(OUTSIDE)]
     known = [case for case in cases if case["effects"] and not case["id"].startswith(("poor", *OUTSIDE))
              and min(case["snr"]) >= VISIBLE]
@@ -67,19 +67,19 @@ def groups(cases):
 
     return [
         ("one effect: truth in a named set", single, 0.99, lambda case: case.get("in_set")),
-        ("one effect: nothing else named", single, 0.97, lambda case: case.get("nothing_else")),
+        ("one effect: no other effect named", single, 0.97, lambda case: case.get("nothing_else")),
         ("one effect: both", single, 0.96, both),
         ("two effects: both in sets", pairs, 1.0, lambda case: case.get("in_set")),
-        ("two effects: and nothing else", pairs, 0.90, both),
-        ("null flights without a name", null, 1.0, lambda case: case.get("false_alarm") is False),
-        ("outside the catalogue, flagged", hard, 48 / 54, lambda case: case["identified"]),
-        ("static pressure not made worse", cases, 1.0, lambda case: not case.get("harm")),
-        ("no crash, no refusal", cases, 1.0, lambda case: "error" not in case),
+        ("two effects: both in sets, no other effect named", pairs, 0.90, both),
+        ("null cases: no effect named", null, 1.0, lambda case: case.get("false_alarm") is False),
+        ("outside the catalogue: flagged", hard, 48 / 54, lambda case: case["identified"]),
+        ("static error not increased", cases, 1.0, lambda case: not case.get("harm")),
+        ("no error of the tool", cases, 1.0, lambda case: "error" not in case),
     ]
 
 
-def most_failures(count, rate, chance=CHANCE):
-    """The largest number of failures among `count` cases compatible with a rate of success: P(more) < chance."""
+def max_failures(count, rate, chance=CHANCE):
+    """Smallest number of failures in `count` cases for which P(more failures) < chance at the given rate of success."""
     more = 1.0
     for failures in range(count + 1):
         more -= math.comb(count, failures) * (1 - rate) ** failures * rate ** (count - failures)
@@ -100,25 +100,25 @@ def median(values):
 
 
 def error_ratio(cases):
-    """Static error after `improve` over that before, of static effects of SNR 0.8: the median."""
+    """Median ratio of the static error after and before `improve`, for static effects with SNR 0.8."""
     return median([case["err_best"] / case["err_base"] for case in cases
                    if "error" not in case and case["id"].startswith("static") and case["id"].endswith(".0.8")])
 
 
 def tables(tool, folder, salts, jobs=2):
-    """Markdown of all flights of the given salts; None if the simulator is absent."""
+    """Table of the given salts as Markdown; None without the simulator."""
     simulator = folder_of_simulator()
     if simulator is None:
         return None
     cases = [judged(tool, simulator, folder, salt, jobs=jobs) for salt in salts]
-    lines = [f"| what | wanted | {' | '.join(f'salt {salt}' for salt in salts)} |", "|---|---|" + "---|" * len(salts)]
+    lines = [f"| quantity | target | {' | '.join(f'salt {salt}' for salt in salts)} |", "|---|---|" + "---|" * len(salts)]
     for rows in zip(*map(groups, cases)):
-        what, _, rate, _ = rows[0]
+        text, _, rate, _ = rows[0]
         counts = [f"{sum(map(bool, map(right, some)))} of {len(some)}" for _, some, _, right in rows]
-        lines.append(f"| {what} | {100 * rate:.0f} % | {' | '.join(counts)} |")
+        lines.append(f"| {text} | {100 * rate:.0f} % | {' | '.join(counts)} |")
     lines.append("| one effect: mean size of the set | 1.6 | " + " | ".join(f"{mean_set(some):.2f}" for some in cases) +
                  " |")
-    lines.append("| static effects, SNR 0.8: static error after over before, median | 0.2 | " +
+    lines.append("| static effects, SNR 0.8: static error after / before, median | 0.2 | " +
                  " | ".join(f"{error_ratio(some):.2f}" for some in cases) + " |")
     return "\n".join(lines)
 
@@ -126,9 +126,9 @@ def tables(tool, folder, salts, jobs=2):
 def main():
     parser = argparse.ArgumentParser(prog="foreign.py", description=__doc__.split("\n")[0])
     parser.add_argument("tool", help="the program pcor")
-    parser.add_argument("--share", default="3/10", metavar="K/N", help="the K-th of N shares of the cases")
+    parser.add_argument("--share", default="3/10", metavar="K/N", help="share K of N shares of the cases")
     parser.add_argument("--salt", default="x", help="salt of the simulator: another value simulates other flights")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="parallel processes")
     options = parser.parse_args()
     simulator = folder_of_simulator()
     if simulator is None:
@@ -137,11 +137,11 @@ def main():
     with tempfile.TemporaryDirectory(prefix="foreign-") as folder:
         cases = judged(Path(options.tool).resolve(), simulator, folder, options.salt, options.share, options.jobs)
     failed = False
-    for what, some, rate, right in groups(cases):
+    for text, some, rate, right in groups(cases):
         wrong = [case for case in some if not right(case)]
-        allowed = most_failures(len(some), rate)
+        allowed = max_failures(len(some), rate)
         failed = failed or len(wrong) > allowed
-        print(f"{'FAILED ' if len(wrong) > allowed else ''}{what}: {len(some) - len(wrong)} of {len(some)}, at most "
+        print(f"{'FAILED ' if len(wrong) > allowed else ''}{text}: {len(some) - len(wrong)} of {len(some)}, at most "
               f"{allowed} may fail")
         for case in wrong:
             print(f"    {case['id']}: {case.get('error') or case['found']}")

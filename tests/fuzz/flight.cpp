@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t max_samples = 1 << 20;
 
-/// A file with these bytes, replacing the previous bytes. The HDF5 library requires a file name.
+/// Writes the bytes to a file, because the HDF5 library requires a path. The next call overwrites the file.
 std::filesystem::path file_of(const std::uint8_t* bytes, std::size_t size) {
   static const pcor::test::TemporaryDirectory folder;
   std::ofstream file(folder / "flight.nc", std::ios::binary);

@@ -1,4 +1,4 @@
-/// Replacement for libFuzzer: reads every file in the given folders, each as a separate input.
+/// Replaces libFuzzer: passes each file of the given folders to the fuzzer as one input.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

@@ -8,7 +8,7 @@
 
 namespace fuzz {
 
-/// Calls a function that may refuse its input. A refusal is valid; any other failure is a fault.
+/// Calls a function that may throw pcor::Error. Any other exception is a fault.
 template <class Work>
 void refusable(Work work) {
   try {
@@ -18,7 +18,7 @@ void refusable(Work work) {
   }
 }
 
-/// Reads what libFuzzer gives as a text.
+/// Passes the bytes of libFuzzer to `read` as a text.
 template <class Read>
 int reading(const std::uint8_t* bytes, std::size_t size, Read read) {
   const std::string text(bytes, bytes + size);

@@ -12,8 +12,8 @@
 
 namespace {
 
-/// A file with times only. The lines of a text are the attributes of the time and of the file, the base time
-/// and the times.
+/// File that contains only times. Lines of the text: units, calendar, FlightDate, TimeInterval, base time,
+/// times.
 class TimesFile final : public pcor::internal::FlightFile {
  public:
   explicit TimesFile(const std::string& text) {

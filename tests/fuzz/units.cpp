@@ -11,8 +11,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
          {"hPa", "K", "m/s", "degree", "1", "seconds since 1970-01-01 00:00:00 UTC"}) {
       fuzz::refusable([&] {
         const auto conversion = pcor::UnitConversion::between(text, requested, {"PSFD", "a file", ""});
-        const bool is_one = std::isnormal(conversion.scale()) && std::isfinite(conversion.offset());
-        if (!is_one) std::abort();
+        const bool valid = std::isnormal(conversion.scale()) && std::isfinite(conversion.offset());
+        if (!valid) std::abort();
       });
     }
   });

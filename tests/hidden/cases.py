@@ -1,4 +1,4 @@
-"""One case: flights with a secret, a run of the tool as by a user, and the results."""
+"""One case: simulated flights with hidden effects, runs of the tool, and the results."""
 
 import resource
 import shutil
@@ -18,7 +18,7 @@ import strength
 from records import Records, without_truth
 from tool_runs import ToolError
 
-OUTLIER = 5.0  # times the robust scatter: such held-out samples are left out for twin and case alike
+OUTLIER = 5.0  # times the robust scatter of the baseline; such held-out samples are excluded from baseline and case
 
 
 @dataclass(frozen=True)
@@ -28,10 +28,10 @@ class Case:
     plan: plans.Plan
     noise: str = "ar"
     trouble: str = "none"
-    start: str = "right"  # of the user's coefficients, see plans.STARTS
+    start: str = "right"  # initial coefficients of the user's model, see plans.STARTS
     seed: int = 0
-    secrets: tuple = ()
-    times: float = 0.0  # the usual size
+    secrets: tuple = ()  # names of hidden effects
+    times: float = 0.0  # size / usual size of the hidden effects
     improve: bool = True
 
     @property
@@ -50,13 +50,12 @@ class Setting:
 
     tool: object
     folder: Path
-    diagnose: bool = True
     improve: bool = True
 
 
 @dataclass(frozen=True)
-class Question:
-    """The user's side of a case: missing terms of the model, further inputs of the tool."""
+class UserInputs:
+    """Model and reference of the user: effects missing from the model (`without`), moist air, laser."""
 
     without: tuple = ()
     moist: bool = True
@@ -75,13 +74,13 @@ class Question:
         return ("--reference", f"static:{path}")
 
 
-def question_of(secrets, aircraft):
+def user_inputs_of(secrets, aircraft):
     without = tuple(name for secret in secrets for name in secret_effects.lacking(secret, plans.LAWS[aircraft]))
-    return Question(without, all(secret.moist for secret in secrets), all(secret.laser for secret in secrets))
+    return UserInputs(without, all(secret.moist for secret in secrets), all(secret.laser for secret in secrets))
 
 
 def simulate(setting, folder, case, part, without, hidden=()):
-    """A flight of ideal instruments; `hidden` are secrets with their strengths."""
+    """Flight with ideal instruments; `hidden` lists secrets with their sizes."""
     flight, scenario = folder / f"flight{part}.nc", folder / "scenario.toml"
     effects = "\n\n".join(secret.text(case.plan.aircraft, size) for secret, size in hidden)
     scenario.write_text(plans.scenario_text(case.plan, part, 10 * case.seed + part, effects, without))
@@ -95,36 +94,35 @@ def simulate(setting, folder, case, part, without, hidden=()):
 
 
 def record(case, part, flight, truth=None):
-    """Real instruments on the flight; values known only to the simulator are written to `truth`."""
+    """Adds instrument errors to the flight and moves the variables of the simulator (TRUE_...) to `truth`."""
     pair = (plans.STATIC[case.plan.aircraft], "QCF")
     instruments.record(flight, pair, case.noise, {case.trouble}, [case.seed, part])
     without_truth(flight, truth)
 
 
 @dataclass
-class Twin:
-    """The same flights with nothing hidden: what the best model could reach."""
+class Baseline:
+    """The same flights without hidden effects, with a fit of the right model."""
 
-    noise: float  # rms, hPa
-    held_out: object = None  # residual of every sample, hPa
-    rms: float = 0.0
-    ideal: object = None  # residual of the training flights without noise, hPa
-    columns: object = None  # what the coefficients of the user's model multiply there
+    rms: float  # held-out residual, hPa
+    held_out: object  # held-out residual of each sample, hPa; NaN for outliers
+    ideal: object  # residual of the training flights without noise, hPa
+    columns: object  # derivatives with respect to the user's coefficients on the training flights
 
 
-def twin_of(setting, folder, case, question):
-    """Made once for flights that cases share, and kept in a file."""
-    laser = "laser" if question.laser else "second"
-    kept = setting.folder / ("-".join(("twin", case.world, laser, *question.without)) + ".npz")
+def baseline_of(setting, folder, case, inputs):
+    """Baseline of a case, stored in a file, because several cases share it."""
+    laser = "laser" if inputs.laser else "second"
+    kept = setting.folder / ("-".join(("baseline", case.world, laser, *inputs.without)) + ".npz")
     if not kept.exists():
-        arguments = question.arguments(folder)
-        right = Question(question.without, True, question.laser).model(folder, case.plan.aircraft)
-        flights = [simulate(setting, folder, case, part, question.without) for part in (0, 1, 2)]
+        arguments = inputs.arguments(folder)
+        right = UserInputs(inputs.without, True, inputs.laser).model(folder, case.plan.aircraft)
+        flights = [simulate(setting, folder, case, part, inputs.without) for part in (0, 1, 2)]
         ideal = [strength.residual_of(setting.tool, flight, right, folder, arguments) for flight in flights[:2]]
-        columns = [strength.columns_of(flight, case.plan.aircraft, question.without) for flight in flights[:2]]
+        columns = [strength.columns_of(flight, case.plan.aircraft, inputs.without) for flight in flights[:2]]
         for part, flight in enumerate(flights):
             record(case, part, flight)
-        fitted = folder / "twin.toml"
+        fitted = folder / "baseline.toml"
         setting.tool.run("refit", *flights[:2], "-m", right, "-o", fitted, "--quiet", *arguments)
         residual = strength.residual_of(setting.tool, flights[2], fitted, folder, arguments)
         part = kept.with_suffix(f".{id(case)}.npz")
@@ -135,7 +133,7 @@ def twin_of(setting, folder, case, question):
     scatter = 1.4826 * numpy.nanmedian(numpy.abs(residual))
     residual[~(numpy.abs(residual) < OUTLIER * scatter)] = numpy.nan
     rms = float(numpy.sqrt(numpy.nanmean(residual**2)))
-    return Twin(rms, residual, rms, ideal, columns)
+    return Baseline(rms, residual, ideal, columns)
 
 
 def rms_where(values, used):
@@ -144,40 +142,40 @@ def rms_where(values, used):
 
 
 def static_error(setting, folder, flight, truth, model, used):
-    """The rms of the corrected static pressure against the true one, in the air with flaps up, hPa."""
+    """Rms error of the corrected static pressure, hPa, in samples `used` above 300 m and 70 m/s with flaps below 5 %."""
     output = folder / "processed.nc"
     setting.tool.run("process", flight, "-m", model, "-o", output, "--quiet")
-    (found,) = strength.read(output, "PSXC")
-    right, speed, height, flaps = strength.read(truth, "TRUE_PS", "TRUE_TAS", "RALT", "FLAPS")
+    (corrected,) = strength.read(output, "PSXC")
+    true, speed, height, flaps = strength.read(truth, "TRUE_PS", "TRUE_TAS", "RALT", "FLAPS")
     output.unlink()
-    return rms_where(found - right, used & (speed > 70) & (flaps < 5) & (height > 300))
+    return rms_where(corrected - true, used & (speed > 70) & (flaps < 5) & (height > 300))
 
 
-def visible(setting, folder, case, question, twin, hidden):
-    """Part of the secrets that the user's fitted model does not absorb, and their full size, hPa rms."""
-    model, arguments = question.model(folder, case.plan.aircraft), question.arguments(folder)
-    flights = [simulate(setting, folder, case, part, question.without, hidden) for part in (0, 1)]
+def visible(setting, folder, case, inputs, baseline, hidden):
+    """Rms of the hidden effects, hPa: the part that the user's fitted model does not absorb, and the total."""
+    model, arguments = inputs.model(folder, case.plan.aircraft), inputs.arguments(folder)
+    flights = [simulate(setting, folder, case, part, inputs.without, hidden) for part in (0, 1)]
     residual = numpy.concatenate([strength.residual_of(setting.tool, flight, model, folder, arguments)
                                   for flight in flights])
-    return strength.left_over(residual - twin.ideal, twin.columns)
+    return strength.unabsorbed(residual - baseline.ideal, baseline.columns)
 
 
-def hide(setting, folder, case, question, twin):
-    """Secrets with their sizes, and a description of each; effects are nearly linear in their size."""
-    hidden, told = [], []
+def hide(setting, folder, case, inputs, baseline):
+    """Secrets with their sizes, and a description of each. Assumes that effects are linear in their size."""
+    hidden, descriptions = [], []
     for number, name in enumerate(case.secrets):
         secret = secret_effects.BY_NAME[name]
-        left, whole = visible(setting, folder, case, question, twin, [(secret, secret.usual)])
-        times = min(case.times, secret_effects.LARGEST / max(whole, 1e-9)) if secret.scalable else 1.0
+        unabsorbed, total = visible(setting, folder, case, inputs, baseline, [(secret, secret.usual)])
+        times = min(case.times, secret_effects.MAX_RMS / max(total, 1e-9)) if secret.scalable else 1.0
         sign = -1 if secret.both_signs and (case.seed + number) % 2 else 1
         hidden.append((secret, sign * times * secret.usual))
-        told.append({"effect": name, "strength": hidden[-1][1], "times_usual": times,
-                     "snr": left * times / twin.noise})
-    return hidden, told
+        descriptions.append({"effect": name, "strength": hidden[-1][1], "times_usual": times,
+                             "snr": unabsorbed * times / baseline.rms})
+    return hidden, descriptions
 
 
 def run_case(setting, case):
-    """The facts of a case as a dictionary for JSON. An error of the tool is a fact, too."""
+    """Result of a case as a dictionary for JSON. A failed run of the tool has the key "error"."""
     begin, work = time.monotonic(), processor_seconds()
     facts = {"kind": case.kind, "name": case.name, "label": case.label, "plan_kind": case.plan.kind,
              "noise": case.noise, "trouble": case.trouble, "start": case.start, "secrets": list(case.secrets)}
@@ -197,7 +195,7 @@ def run_case(setting, case):
 
 
 def processor_seconds():
-    """Processor time of this process and of its runs of the tool."""
+    """Processor time of this process and of its runs of the tool, s."""
     usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
@@ -205,38 +203,37 @@ def processor_seconds():
 def run_hidden(setting, folder, case):
     tool, aircraft = setting.tool, case.plan.aircraft
     secrets = [secret_effects.BY_NAME[name] for name in case.secrets]
-    question = question_of(secrets, aircraft)
-    arguments = question.arguments(folder)
-    twin = twin_of(setting, folder, case, question)
-    hidden, told = hide(setting, folder, case, question, twin)
+    inputs = user_inputs_of(secrets, aircraft)
+    arguments = inputs.arguments(folder)
+    baseline = baseline_of(setting, folder, case, inputs)
+    hidden, descriptions = hide(setting, folder, case, inputs, baseline)
     improve = case.improve and setting.improve
-    facts = {"hidden": told, "snr": min(each["snr"] for each in told), "noise_hpa": twin.noise,
+    facts = {"hidden": descriptions, "snr": min(each["snr"] for each in descriptions), "noise_hpa": baseline.rms,
              "static": all(secret.static for secret in secrets)}
 
     truth = folder / "truth.nc"
-    flights = [simulate(setting, folder, case, part, question.without, hidden)
+    flights = [simulate(setting, folder, case, part, inputs.without, hidden)
                for part in ((0, 1, 2) if improve else (0, 1))]
     for part, flight in enumerate(flights):
         record(case, part, flight, truth if part == 2 else None)
-    user, fitted, best = question.model(folder, aircraft, case.start), folder / "fitted.toml", folder / "best.toml"
+    user, fitted, best = inputs.model(folder, aircraft, case.start), folder / "fitted.toml", folder / "best.toml"
     facts["fit_hpa"] = tool.json_of("refit", *flights[:2], "-m", user, "-o", fitted, *arguments)["rms_hpa"]
 
-    if setting.diagnose:
-        begin = time.monotonic()
-        diagnosis = tool.json_of("diagnose", *flights[:2], "-m", fitted, *arguments)
-        facts["diagnose_seconds"] = round(time.monotonic() - begin, 2)
-        facts["diagnosis"] = scoring.summary_of(diagnosis)
-        facts["score"] = scoring.of_hidden(diagnosis, secrets)
+    begin = time.monotonic()
+    diagnosis = tool.json_of("diagnose", *flights[:2], "-m", fitted, *arguments)
+    facts["diagnose_seconds"] = round(time.monotonic() - begin, 2)
+    facts["diagnosis"] = scoring.summary_of(diagnosis)
+    facts["score"] = scoring.of_hidden(diagnosis, secrets)
     if improve:
-        used = numpy.isfinite(twin.held_out)
+        used = numpy.isfinite(baseline.held_out)
         residual = strength.residual_of(tool, flights[2], fitted, folder, arguments)
-        facts["held_out_before"] = rms_where(residual, used) / twin.rms
+        facts["held_out_before"] = rms_where(residual, used) / baseline.rms
         facts["static_before"] = static_error(setting, folder, flights[2], truth, fitted, used)
         begin = time.monotonic()
         improvement = tool.json_of("improve", *flights[:2], "-m", user, "-o", best, *arguments)
         facts["improve_seconds"] = round(time.monotonic() - begin, 2)
         facts["added"] = [step["added"] for step in improvement["steps"] if step["added"]]
         residual = strength.residual_of(tool, flights[2], best, folder, arguments)
-        facts["held_out_after"] = rms_where(residual, used) / twin.rms
+        facts["held_out_after"] = rms_where(residual, used) / baseline.rms
         facts["static_after"] = static_error(setting, folder, flights[2], truth, best, used)
     return facts

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Flights without any effect, harder than those of `hidden_effects`: what does the tool claim there?
+"""Null cases: flights without hidden effects. Counts wrong claims of `pcor diagnose`.
 
     nulls.py TOOL --cases 200 --seed 1
 
-A case is two flights of about two hours. Half of the cases have noise with a short memory, half 1/f noise; in turn an
-instrument drifts, freezes or is hit by bursts, or the model starts with wrong coefficients, or all of this at once
-(instruments.py). The model is refitted, then diagnosed, as a user would. A name is a wrong claim, and so is a variable
-of the file that the structure is traced to; structure without a cause is none: slow noise is structure.
+A case has two flights of about two hours. Half of the cases have noise with a short memory, half 1/f noise. Troubles
+alternate: an instrument drifts, freezes or has bursts, the model starts with wrong coefficients, or all together
+(instruments.py). The model is refitted and diagnosed. A named effect is a wrong claim, and so is a variable to which
+structure is traced. Structure without a cause is not a wrong claim, because slow noise is structure.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
-    os.environ.setdefault(variable, "1")  # one process for each core is enough
+    os.environ.setdefault(variable, "1")  # --jobs already uses the cores
 
 import instruments  # noqa: E402
 import plans  # noqa: E402
@@ -46,7 +46,7 @@ class NullCase:
 
 
 def null_case(seed, number):
-    """Noises and troubles in turn, so that any stretch of numbers has all of them."""
+    """Noises and troubles alternate, so that any 14 consecutive numbers contain all combinations."""
     noise = instruments.NOISES[number % 2]
     trouble = TROUBLES[(number // 2) % len(TROUBLES)]
     draw = random.Random(f"null {seed} {number}")
@@ -55,7 +55,7 @@ def null_case(seed, number):
 
 
 def run_case(tool, case, references=(), kept=None):
-    """Claims of the tool, as a dictionary."""
+    """Result of a case as a dictionary for JSON."""
     folder = Path(tempfile.mkdtemp(prefix="null-"))
     draw = random.Random(f"{case} {case.seed}")
     pair = (plans.STATIC[case.plan.aircraft], "QCF")
@@ -73,7 +73,7 @@ def run_case(tool, case, references=(), kept=None):
         user, fitted = folder / "user.toml", folder / "fitted.toml"
         start = draw.choice(list(plans.STARTS)[1:]) if case.trouble in ("wrong start", "all") else "right"
         user.write_text(plans.model_text(case.plan.aircraft, start=start))
-        facts["told"].append(f"the law starts {start}")
+        facts["told"].append(f"initial coefficients {start}")
         fit = tool.json_of("refit", *flights, "-m", user, "-o", fitted, *references)
         diagnosis = tool.json_of("diagnose", *flights, "-m", fitted, *references)
         facts |= {"rms_hpa": fit["rms_hpa"], "verdict": scoring.verdict_of(diagnosis),
@@ -115,25 +115,25 @@ def main():
     parser.add_argument("tool", help="the program pcor")
     parser.add_argument("--cases", type=int, default=200, metavar="N")
     parser.add_argument("--first", type=int, default=0, metavar="K", help="number of the first case")
-    parser.add_argument("--seed", type=int, default=1, metavar="S", help="other flights")
+    parser.add_argument("--seed", type=int, default=1, metavar="S", help="another seed simulates other flights")
     parser.add_argument("--reference", action="append", default=[], metavar="REF", help="reference, see pcor compare --help")
-    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="processes side by side")
-    parser.add_argument("--keep", metavar="FOLDER", help="files of the cases with a wrong claim or an error")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="parallel processes")
+    parser.add_argument("--keep", metavar="FOLDER", help="folder for the files of cases with a wrong claim or an error")
     options = parser.parse_args()
     tool = Tool(options.tool)
     references = [word for reference in options.reference for word in ("--reference", reference)]
-    wanted = [(tool, null_case(options.seed, number), references, options.keep)
-              for number in range(options.first, options.first + options.cases)]
+    selected = [(tool, null_case(options.seed, number), references, options.keep)
+                for number in range(options.first, options.first + options.cases)]
     found = []
     with multiprocessing.Pool(options.jobs) as pool:
-        for facts in pool.imap(run_numbered, wanted):
+        for facts in pool.imap(run_numbered, selected):
             found.append(facts)
             if facts["claim"] in ("named", "traced", "error"):
                 print(f"{facts['case']}: {facts['verdict']} {facts.get('summary', '')}; {'; '.join(facts['told'])}",
                       flush=True)
     print(table_of(found))
     wrong = sum(facts["claim"] in ("named", "traced") for facts in found)
-    print(f"{sum(facts['claim'] == 'named' for facts in found)} of {len(found)} named, {wrong} with any wrong claim")
+    print(f"{sum(facts['claim'] == 'named' for facts in found)} of {len(found)} named, {wrong} with a wrong claim")
     return 1 if any(facts["claim"] == "error" for facts in found) else 0
 
 

@@ -1,8 +1,8 @@
-"""Flights of all kinds from a number: what is flown, and in what air.
+"""Scenarios of flights: legs and atmosphere from the number of a plan.
 
-The number decides legs, heights, speeds and air; the seed decides the random numbers of the air. The
-instruments are ideal: instruments.py puts others upon the flights. So flights
-of one plan and two seeds are two flights of the same day's plan, and an effect has about the same size in both.
+The number of the plan and the part determine legs, heights, speeds and atmosphere; the seed determines turbulence. Parts are
+flights of the same kind on different days, in which an effect has about the same size. The instruments are ideal;
+instruments.py adds their errors.
 """
 
 import random
@@ -17,15 +17,15 @@ LAWS = {
 STATIC = {"C-130": "PSFD", "GV": "PSF"}
 THERMOMETER = {"C-130": ("TTRR", 0.95), "GV": ("TTHR1", 0.985)}
 
-# Height, spread of it, speed, speed run from and to, climb rate to it.
+# For each level: height and its spread, m; speed, lowest and highest speed of a speed run, m/s
 HEIGHTS = {
     "C-130": [(1400, 300, 103, 92, 138), (3300, 500, 112, 95, 145), (5400, 400, 120, 102, 150)],
     "GV": [(2500, 500, 145, 125, 185), (7000, 700, 178, 152, 215), (10900, 300, 222, 198, 247)],
 }
-CLIMB = {"C-130": 6, "GV": 10}
-TAKE_OFF_SPEED = {"C-130": 100, "GV": 140}
+CLIMB = {"C-130": 6, "GV": 10}  # m/s
+TAKE_OFF_SPEED = {"C-130": 100, "GV": 140}  # m/s
 KINDS = ("manoeuvres", "long", "steady", "short")
-# Factors applied to the coefficients of a user's law before the fit.
+# Factors on the coefficients of the user's model before the fit
 STARTS = {"right": 1.0, "neutral": 0.0, "halved": 0.5, "doubled": 2.0, "negated": -1.0}
 SECOND = {"static-constant": ("a0", 0.002047), "static-alpha": ("a1", 0.008890), "static-qp": ("a2", 0.07119)}
 
@@ -51,7 +51,7 @@ class Plan:
 
 
 def model_text(aircraft, without=(), moist=True, start="right", laser=True):
-    """The model that the user has: the aircraft's law, less the effects `without`."""
+    """Model file of the user: the law of the aircraft except the effects `without`."""
     roles = {role: variable for role, variable in ROLES.items() if laser or role != "lams_airspeed"}
     law = {effect: (parameter, STARTS[start] * value) for effect, (parameter, value) in LAWS[aircraft].items()
            if effect not in without}
@@ -59,7 +59,7 @@ def model_text(aircraft, without=(), moist=True, start="right", laser=True):
 
 
 def second_model_text():
-    """The right model of the second static system of the C-130."""
+    """Model file of the second static system of the C-130, with the right coefficients."""
     roles = {role: variable for role, variable in ROLES.items() if role != "lams_airspeed"}
     return text_of("C-130", ("PSFRD", "QCFR"), roles, SECOND)
 
@@ -81,8 +81,8 @@ def leg(kind, **numbers):
     return "\n".join(lines + [f"{key} = {round(value, 3)}" for key, value in numbers.items()])
 
 
-def block(rng, aircraft, height, wanted):
-    """Manoeuvres at one height, in any order."""
+def block(rng, aircraft, height, kinds):
+    """Manoeuvres at one height, in random order."""
     _, _, speed, low, high = HEIGHTS[aircraft][height]
     speed = speed + rng.uniform(-3, 3)
     amplitude = 4 if aircraft == "C-130" else (3.5, 3, 2)[height]
@@ -98,8 +98,8 @@ def block(rng, aircraft, height, wanted):
         "circle": lambda: leg("circle", angle=rng.choice([-360, 360]), speed=speed),
         "turn": lambda: leg("turn", angle=rng.choice([-90, 90, 120, -120]), speed=speed),
     }
-    rng.shuffle(wanted)
-    return [choices[name]() for name in wanted]
+    rng.shuffle(kinds)
+    return [choices[kind]() for kind in kinds]
 
 
 def legs_of(plan, part):
@@ -113,13 +113,13 @@ def legs_of(plan, part):
     if plan.kind == "short":
         height = height_of(0)
         legs.append(leg("take-off", altitude=height, speed=TAKE_OFF_SPEED[plan.aircraft], rate=CLIMB[plan.aircraft]))
-        wanted = ["level"] + rng.choice([["pitch", "yaw", "speed-run"], ["pitch", "speed-run"], ["yaw", "speed-run"],
-                                         ["speed-run", "turn"], ["pitch", "yaw", "turn"], ["level", "level"]])
-        legs += block(rng, plan.aircraft, 0, wanted)
+        kinds = ["level"] + rng.choice([["pitch", "yaw", "speed-run"], ["pitch", "speed-run"], ["yaw", "speed-run"],
+                                        ["speed-run", "turn"], ["pitch", "yaw", "turn"], ["level", "level"]])
+        legs += block(rng, plan.aircraft, 0, kinds)
     else:
         order = rng.sample([0, 1, 2], 2 if plan.kind == "manoeuvres" else 3)
         if plan.aircraft == "GV" and plan.kind == "manoeuvres" and 2 not in order:
-            order[1] = 2  # where its Mach number is high
+            order[1] = 2  # the level with a high Mach number
         now = None
         for place, index in enumerate(order):
             goal = height_of(index)
@@ -157,7 +157,7 @@ def atmosphere_of(plan, part):
     inversion = rng.uniform(1000, 2500)
     warm = rng.uniform(280, 300) if plan.aircraft == "C-130" else rng.uniform(294, 302)
     turbulence, layer = 1e-4, 2e-3
-    if plan.number % 2:  # calm and rough air change with height, the mismatch of the laser with its cube root
+    if plan.number % 2:  # other turbulence in and above the boundary layer
         turbulence, layer, inversion = rng.choice([1e-5, 3e-5, 3e-4]), rng.choice([1e-3, 4e-3]), rng.uniform(1300, 3500)
     base = HEIGHTS[plan.aircraft][0 if plan.kind == "short" else rng.choice([0, 1])][0] - 700
     return "\n".join([
@@ -175,7 +175,7 @@ def terms_of(law, without=()):
 
 
 def scenario_text(plan, part, seed, effects="", without=()):
-    """A scenario of `pcor simulate`. Parts 0 and 1 of a plan are for training, part 2 is held out."""
+    """Scenario for `pcor simulate`. Parts 0 and 1 of a plan are for training, part 2 is held out."""
     day = random.Random(f"{plan} aircraft {part}")
     weight = day.uniform(*((54000, 60000) if plan.aircraft == "C-130" else (31000, 36000)))
     head = ['format = "pcor-scenario/1"', f'name = "{plan} {part}"', f'aircraft = "{plan.aircraft}"', f"seed = {seed}",

@@ -1,7 +1,7 @@
-"""What a flight recorded, to be changed where nature would: at a port, in a transducer, in a thermometer.
+"""Recorded series of a flight, changed at the location of an error: a port, a transducer, a thermometer.
 
-delta-p is added to the measured static pressure and taken off the measured dynamic pressure, so an error of the static
-port that needs delta-p lowers the reading of the one and raises that of the other.
+delta-p is added to the measured static pressure and subtracted from the measured dynamic pressure. So an error of the static
+port that requires delta-p decreases the measured static pressure and increases the measured dynamic pressure.
 """
 
 import netCDF4
@@ -9,10 +9,10 @@ import numpy
 
 
 class Records:
-    """The recorded series of a flight that was simulated without noise, and the truth."""
+    """Series of a flight simulated without noise, including the true values."""
 
     def __init__(self, path, part):
-        self.part = part  # the number of the flight
+        self.part = part  # number of the flight
         with netCDF4.Dataset(path) as file:
             self.values = {name: numpy.ma.filled(file[name][:].astype(float), numpy.nan) for name in file.variables
                            if file[name].dtype.kind == "f"}
@@ -26,16 +26,16 @@ class Records:
             self.attack = numpy.where(flown, self.values["ADIFR"] / self.values["QCR"], 0.0)
             self.sideslip = numpy.where(flown, self.values["BDIFR"] / self.values["QCR"], 0.0)
         self.hours = numpy.arange(len(self.p)) / 3600.0
-        self.extra_load = self.values["TRUE_NORMA"] / 9.80665  # g beyond 1
+        self.extra_load = self.values["TRUE_NORMA"] / 9.80665  # normal acceleration minus 1 g, g
         self.roll = numpy.radians(self.values["ROLL"])
-        self.bay = self.values["TBAY"] + 273.15  # K, of the transducers
+        self.bay = self.values["TBAY"] + 273.15  # temperature of the transducers, K
 
     def add(self, name, error):
         self.values[name] = self.values[name] + error
         self.changed.add(name)
 
     def port(self, delta_p):
-        """An error of the static port of the first system, hPa; the radome has the same static pressure."""
+        """Error of the static port of the first system, hPa; the radome uses the same static pressure."""
         self.add(self.static, -delta_p)
         self.add("QCF", delta_p)
         self.add("QCR", delta_p)
@@ -54,7 +54,7 @@ class Records:
 
 
 def without_truth(flight, kept):
-    """The series that an aircraft records, without simulator-only variables. The truth is written to `kept`."""
+    """Removes the variables and attributes that only a simulator has. The complete file is moved to `kept` unless None."""
     with netCDF4.Dataset(flight) as file:
         file.set_auto_maskandscale(False)
         recorded = flight.with_name("recorded.nc")
@@ -62,8 +62,8 @@ def without_truth(flight, kept):
             copy.set_fill_off()
             for name, dimension in file.dimensions.items():
                 copy.createDimension(name, None if dimension.isunlimited() else len(dimension))
-            told = ("simulation_effects", "simulation_legs", "history")
-            copy.setncatts({name: file.getncattr(name) for name in file.ncattrs() if name not in told})
+            removed = ("simulation_effects", "simulation_legs", "history")
+            copy.setncatts({name: file.getncattr(name) for name in file.ncattrs() if name not in removed})
             for name, variable in file.variables.items():
                 if name.startswith("TRUE_"):
                     continue

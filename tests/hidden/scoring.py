@@ -1,8 +1,8 @@
-"""Scores a diagnosis from its JSON, given the truth."""
+"""Scores the JSON of a diagnosis against the truth."""
 
 
 def names_in(finding):
-    """The effect that a finding names and the effects that the data cannot separate from it."""
+    """Set of a finding: the named effect and its aliases."""
     aliases = [alias if isinstance(alias, str) else alias["effect"] for alias in finding.get("aliases", [])]
     return [finding["effect"], *aliases]
 
@@ -12,7 +12,7 @@ def traced_in(diagnosis):
 
 
 def verdict_of(diagnosis):
-    """The verdict of the tool; from the findings if it is absent."""
+    """Verdict of the tool, or, if the JSON has no verdict, a verdict derived from the findings."""
     if "verdict" in diagnosis:
         return diagnosis["verdict"]
     if diagnosis["findings"]:
@@ -27,9 +27,9 @@ def summary_of(diagnosis):
 
 
 def of_hidden(diagnosis, secrets):
-    """`wrong`: a finding in whose set there is no effect that was hidden. With the verdict partial the tool says
-    itself that the name is not the cause, so that is no wrong claim but counts as `partial`. `own_blamed`: a finding
-    that does not admit the other static system."""
+    """Scores of one diagnosis. `wrong`: a finding has no hidden effect in its set, and the verdict is not "partial"; with
+    "partial" the tool states that the named effect is not the cause. `own_blamed`: the set of a finding has no effect of the other static
+    system."""
     sets = [names_in(finding) for finding in diagnosis["findings"]]
     truths = [set(secret.truth) for secret in secrets if secret.truth]
     verdict = verdict_of(diagnosis)

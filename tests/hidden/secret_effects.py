@@ -1,23 +1,22 @@
-"""What is hidden in the flights, and which names count as the truth.
+"""Hidden effects ("secrets") and the names that count as correct.
 
-`usual` is the size met in practice (or an estimate), in the parameter of the simulator or of the change to the records.
-Sizes of 0.3 to 20 times of it are hidden, unless that is more than 6 hPa (rms) before the model absorbs any of it.
+`usual` is a realistic or estimated size, in the parameter of the simulator or of the change to the records. The hidden size
+is 0.3 to 20 times the usual size, limited to 6 hPa rms before the model absorbs a part.
 
-Most effects are put in by the simulator. Variants of shape and place are put into its noiseless records (records.py),
-so they need nothing that the library knows: a term that scales with q where laws have p, a neighbouring power, a zero,
-gain or drift at the transducer of p, at that of q, at the port, in the thermometer, or in the other static system.
+The simulator applies most effects. Variants of shape and location are applied to its noiseless records (records.py) with
+formulas that the library does not have: scaling with q instead of p, another power, or a zero, gain or drift of a static or
+dynamic transducer, of the port, of the thermometer, or of the second static system.
 
-Names that count as the truth besides the effect's own, because the physics is the same thing under another id, and
-for no other reason. Effects that merely look alike do not count: they have to be in the set of aliases.
+Other names count as correct only if their physics is identical. Effects with a similar shape do not count; the tool must list
+them as aliases.
 
-| hidden | also right | why |
+| hidden effect | also correct | reason |
 |---|---|---|
-| clock-skew of QCF | qcf-lag, clock-skew | q(t - tau) is a first-order lag of q, and the laser early by tau |
-| sensor-response of QCF | qcf-lag, total-lag | a lag of the reading of q; at constant p that of the total line |
-| unknown, linear in ENGTRQ, static | speedbrake-thrust | the same law; the constant is in the model |
-| unknown, linear in BNORMA, static | load-factor | the same law |
+| clock-skew of QCF | qcf-lag, clock-skew | q(t - tau) equals a first-order lag of q, or a laser that is early by tau |
+| sensor-response of QCF | qcf-lag, total-lag | lag of q; at constant p the lag of the total line |
+| unknown, linear in ENGTRQ, static | speedbrake-thrust | same formula; the constant is in the model |
 | static-attack | static-alpha | the angle of attack is linear in ADIFR/QCR |
-| humidity-error of the dew point | humidity-error | another parameter of the same error |
+| humidity-error of the dew point | humidity-error | another parameter of the same effect |
 """
 
 from collections.abc import Callable
@@ -25,22 +24,22 @@ from dataclasses import dataclass, replace
 
 import numpy
 
-LARGEST = 6.0  # hPa rms, before the model absorbs any of it
+MAX_RMS = 6.0  # hPa, before the model absorbs a part
 
 
 @dataclass(frozen=True)
 class Secret:
     name: str
-    body: str = ""  # of the scenario's [[effect]]; {s} the strength, STATIC the variable of the static pressure
+    body: str = ""  # body of [[effect]] in the scenario; {s} is the size, STATIC the static pressure variable
     usual: float = 1.0
-    truth: tuple = ()  # ids that are right; empty: outside the catalogue
+    truth: tuple = ()  # correct ids; empty: outside the catalogue
     static: bool = False  # acts at the static port
     both_signs: bool = False
     aircraft: tuple = ("C-130", "GV")
-    moist: bool = True  # constants of the user's model
+    moist: bool = True  # the user's model assumes moist air
     traced: tuple = ()  # variables that a trace may name, for effects outside the catalogue
-    change: Callable = None  # of the Records of a flight, with the strength: what the simulator does not know
-    laser: bool = True  # there is one; otherwise the second static system is all there is to compare with
+    change: Callable = None  # change(records, size), for effects that the simulator does not have
+    laser: bool = True  # the reference is the laser; otherwise the second static system
 
     @property
     def scalable(self):
@@ -78,7 +77,7 @@ def unknown(of, shape, centre, scale, where="static", usual=0.3, traced=None, tr
 HEIGHT = ("GGALT", "RALT", "PS_A", "PSFD", "PSFRD", "PSF")
 
 CATALOGUE = (
-    # In the law of the aircraft and not in the user's model
+    # Effects in the law of the aircraft that the user's model does not have
     static("static-alpha", "a1", 0.004, aircraft=("C-130",)),
     static("static-qp", "a2", 0.03),
     static("static-attack", "a3", 0.0014, truth=("static-attack", "static-alpha"), aircraft=("C-130",)),
@@ -150,12 +149,12 @@ PAIRS = (
 
 
 def variant(name, usual, change, truth=None, **rest):
-    """`name` is the id that is right, with words for the variant."""
+    """The first word of `name` is the correct id unless `truth` is given; the other words describe the variant."""
     return Secret(name, "", usual, truth or (name.split(" ")[0],), both_signs=True, change=change, **rest)
 
 
 VARIANTS = (
-    # Shapes: q where the law has p or the other way round, and neighbouring powers
+    # Other shapes: q instead of p or p instead of q; another power
     variant("static-alpha by q", 0.03, lambda flight, s: flight.port(s * flight.q * flight.attack), static=True),
     variant("static-beta-odd by q", 0.012, lambda flight, s: flight.port(s * flight.q * flight.sideslip), static=True),
     variant("static-beta-even by q", 1.4e-4, lambda flight, s: flight.port(s * flight.q * flight.beta**2), static=True),
@@ -170,7 +169,7 @@ VARIANTS = (
             lambda flight, s: flight.pitot(s * flight.q * (flight.alpha**2 + flight.beta**2) ** 2)),
     variant("pitot-angle of a tube that points 3 deg up", 1e-4,
             lambda flight, s: flight.pitot(s * flight.q * ((flight.alpha - 3) ** 2 + flight.beta**2))),
-    # Places
+    # Other locations
     variant("psfd-gain", 2e-4, lambda flight, s: flight.add(flight.static, s * flight.p)),
     variant("psfd-drift", 0.1, lambda flight, s: flight.add(flight.static, s * flight.hours)),
     variant("psfd-thermal", 0.01, lambda flight, s: flight.add(flight.static, s * (flight.bay - 290))),
@@ -181,7 +180,7 @@ VARIANTS = (
 
 
 def of_other(name, usual, change):
-    """A fault of the second static system of the C-130."""
+    """Fault of the second static system of the C-130."""
     return variant(f"{name} of the other system", usual, change, (f"reference:{name}",), aircraft=("C-130",))
 
 
@@ -206,5 +205,5 @@ BY_NAME = {secret.name: secret for secret in (*CATALOGUE, *VARIANTS, *OTHER, *TW
 
 
 def lacking(secret, law):
-    """The effects of an aircraft's law that neither flights nor user's model have when `secret` is hidden."""
+    """Effects of the law that flights and the user's model lack, because the secret is the same effect."""
     return tuple(name for name in law if name == secret.name)

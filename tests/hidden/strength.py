@@ -1,7 +1,7 @@
-"""How strong an effect is on flights: what the fitted model cannot absorb of it, in hPa.
+"""Strength of an effect on flights: rms of the part that the fitted model does not absorb, hPa.
 
-The same flights are simulated without noise, with the effect and without. The difference of their residuals, less what
-the coefficients of the user's model can take over, has an rms; held against the noise it is the signal-to-noise ratio.
+The same flights are simulated without noise, with and without the effect. The difference of the residuals, after projecting
+out the columns of the user's coefficients, has an rms. This rms over the noise is the signal-to-noise ratio (SNR).
 """
 
 import netCDF4
@@ -24,7 +24,7 @@ def residual_of(tool, flight, model, folder, arguments=()):
 
 
 def columns_of(flight, aircraft, without):
-    """Columns of the coefficients of the user's model, hPa."""
+    """Derivatives of delta-p with respect to the coefficients of the user's model."""
     p, q, a, qr, attack = read(flight, plans.STATIC[aircraft], "QCF", "ADIFR", "QCR", "ATTACK")
     with numpy.errstate(all="ignore"):
         mach = numpy.sqrt(5.0 * numpy.expm1(numpy.log1p(q / p) * 2.0 / 7.0))
@@ -33,8 +33,8 @@ def columns_of(flight, aircraft, without):
     return numpy.array([columns[name] for name in plans.LAWS[aircraft] if name not in without]).T
 
 
-def left_over(difference, columns):
-    """Rms of the part of a difference of residuals that the columns do not explain, and of the whole difference."""
+def unabsorbed(difference, columns):
+    """Rms of a difference of residuals after least squares with the columns, and rms of the whole difference."""
     used = numpy.isfinite(difference) & numpy.isfinite(columns).all(axis=1)
     x, y = columns[used], difference[used]
     scale = numpy.sqrt((x**2).mean(axis=0))

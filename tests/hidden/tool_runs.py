@@ -1,4 +1,4 @@
-"""The tool as a user runs it: a program, files in, files and JSON out."""
+"""Runs the tool as a program."""
 
 import json
 import subprocess
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 class ToolError(Exception):
-    """A failed run of the tool, with its message."""
+    """A run of the tool failed; the text has its message."""
 
 
 class Tool:
@@ -28,7 +28,3 @@ class Tool:
 
     def version(self):
         return self.run("--version").strip()
-
-    def sub_commands(self):
-        lines = self.run("--help").split("Subcommands:")[-1].splitlines()
-        return {line.split()[0] for line in lines if line.startswith("  ") and line.strip()}

@@ -1,7 +1,7 @@
-"""Which flights the cases of a run have.
+"""Selects the flights of the cases of a run.
 
-Cases with a secret share a number of worlds: a plan, noise, a trouble of an instrument and a seed, so that what the
-best model reaches there is found once. A secret meets worlds of all kinds, and each secret begins with another one.
+A world is a combination of plan, noise, instrument trouble, initial coefficients and seed. Cases share worlds, so that a
+baseline is computed once. The cases of an effect use different worlds, and each effect starts with another world.
 """
 
 import instruments
@@ -15,11 +15,11 @@ PLANS = (("C-130", "manoeuvres"), ("C-130", "long"), ("GV", "manoeuvres"), ("C-1
          ("C-130", "manoeuvres"), ("C-130", "manoeuvres"))
 TROUBLES = ("none", "none", *instruments.TROUBLES)
 WORLDS = 40
-TIMES = (1.0, 3.0, 0.3, 10.0, 20.0)  # the usual size
+TIMES = (1.0, 3.0, 0.3, 10.0, 20.0)  # size / usual size
 
 
 def world(base, number):
-    """Ten plans, each with four seeds; noises, troubles and wrong starts in turn, so that they meet."""
+    """World `number`: ten plans with four seeds each; noises, troubles and initial coefficients alternate."""
     number %= WORLDS
     variant, turn = number % len(PLANS), number // len(PLANS)
     aircraft, kind = PLANS[variant]
@@ -30,12 +30,12 @@ def world(base, number):
 
 
 def null_cases(base, count):
-    """Numbered as nulls.py does it."""
+    """Null cases with the numbers of nulls.py."""
     return [Case("null", "null", plans.Plan("", "long", number), secrets=(base, number)) for number in range(count)]
 
 
 def hidden_cases(base, kind, name, secrets, count, times, order):
-    """Cases of one secret in worlds of the aircraft that it is for."""
+    """Cases of one effect or pair, in worlds of the aircraft that have it."""
     aircraft = set(plans.LAWS).intersection(*(secret_effects.BY_NAME[each].aircraft for each in secrets))
     made, number = [], 7 * order
     while len(made) < count:
@@ -64,5 +64,5 @@ def all_cases(base, options):
     return made
 
 
-def chosen(name, wanted):
-    return not wanted or any(word in name for word in wanted)
+def chosen(name, words):
+    return not words or any(word in name for word in words)

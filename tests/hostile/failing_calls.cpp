@@ -1,10 +1,10 @@
-/// Has a call of the system fail, in a program that this library is loaded into before all others:
+/// Makes one system call of a program fail. The library is preloaded:
 ///
 ///     LD_PRELOAD=libfailing_calls.so FAILING_CALL=write FAILING_NUMBER=3 FAILING_REPORT=report PROGRAM ...
 ///
-/// The third call of that kind since `main` began fails as on a full disk; the kinds are listed below. With
-/// the kind "stop" no call fails: the program gets SIGTERM just before its third rename. All other calls
-/// succeed. The failed call is written into the report, which is absent if the program made fewer calls.
+/// The third call of the kind `write` after the start of `main` fails as on a full disk; the kinds are listed
+/// below. With the kind "stop" no call fails, but the program gets SIGTERM before its third rename. The name
+/// of the failed call is written to the report; there is no report if the program makes fewer calls.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -23,7 +23,7 @@
 
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): names of the C library
 extern "C" {
-// Functions of the C library, by names that no program replaces: dlsym itself allocates memory.
+// Internal names of C library functions. dlsym cannot be used for them, because it allocates memory.
 void* __libc_malloc(std::size_t bytes);
 void* __libc_calloc(std::size_t count, std::size_t bytes);
 void* __libc_realloc(void* memory, std::size_t bytes);
@@ -32,7 +32,7 @@ void* __libc_realloc(void* memory, std::size_t bytes);
 
 namespace {
 
-/// The calls of a kind, counted together, and what they fail with.
+/// Calls that are counted together, and the errno of a failure.
 struct Kind {
   const char* name;
   int reason;
@@ -47,7 +47,7 @@ constexpr Kind renaming{"rename", EACCES};
 constexpr Kind closing{"close", EIO};
 constexpr Kind stopping{"stop", 0};
 
-const char* failing_kind = nullptr;  // none before main begins
+const char* failing_kind = nullptr;  // null before main
 std::atomic<long> calls_left{0};
 
 void report(const char* call) {
@@ -57,7 +57,7 @@ void report(const char* call) {
   ::syscall(SYS_close, file);
 }
 
-/// True if this call is the failing one; errno then gives the reason.
+/// True if this call must fail; sets errno.
 bool fails(const Kind& kind, const char* call) {
   if (failing_kind == nullptr || std::strcmp(kind.name, failing_kind) != 0 || --calls_left != 0) return false;
   report(call);
@@ -65,9 +65,9 @@ bool fails(const Kind& kind, const char* call) {
   return true;
 }
 
-/// The replaced function of the given name.
+/// Original function of the given name.
 template <class Function>
-Function* real(Function* /*this_one*/, const char* name) {
+Function* real(Function* /*replacement*/, const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
@@ -147,7 +147,7 @@ int rename(const char* from, const char* to) noexcept {
   return fails(renaming, to) ? -1 : real(rename, "rename")(from, to);
 }
 
-// A file that cannot be closed is closed regardless.
+// The file is closed even if the call fails, as in Linux.
 int close(int file) {
   const int status = real(close, "close")(file);
   return fails(closing, "close") ? -1 : status;
@@ -157,7 +157,7 @@ int fclose(std::FILE* file) {
   return fails(closing, "fclose") ? EOF : status;
 }
 
-/// A time that does not pass: two runs write the same.
+/// Constant time, so that two runs write equal outputs.
 std::time_t time(std::time_t* result) noexcept {
   constexpr std::time_t now = 1'300'000'000;
   if (result != nullptr) *result = now;

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Runs of pcor in which one call of the system fails, each call in turn.
+"""Tests pcor with failing system calls: in each run one call fails.
 
     failing_calls.py TOOL SHIM SOURCE_DIRECTORY [--every] [--kind KIND]
 
-SHIM is made of failing_calls.cpp: it has the n-th call of a kind fail, as where memory or the disk is full. A run then
-ends with status 0, where the call did not matter, or with 1 and one line that says what failed; each output is what was
-there before or what a run without a failure writes, and nothing unfinished is left. Without memory the standard library
-may end a run by a signal, with outputs no less whole. A run that is stopped just before its n-th output appears leaves all
-outputs new or all as they were. n is 1, 2, 3, 7, 15 and so on, until a run makes fewer calls; with --every it is each
-number. Exit status 1: something did not hold; what did not is printed.
+SHIM is the library built from failing_calls.cpp. It makes call n of a kind fail, for example as with a full disk. The run must
+end with status 0 if the call does not matter, otherwise with status 1 and one line that names the failed object. Each output is
+either unchanged or equal to the output of a run without failures, and no unfinished file remains. If memory allocation fails,
+a signal may end the run, with the same requirements on the outputs. If a run is stopped before it renames output n, either all
+outputs are new or all are unchanged. n is 1, 2, 3, 12, 48 and so on until a run makes fewer calls; with --every, all numbers.
+Exit status 1 if a requirement is violated; failures are printed.
 """
 
 import argparse
@@ -22,13 +22,12 @@ from pathlib import Path
 
 KINDS = ("memory", "open", "read", "write", "sync", "rename", "close", "stop")
 EARLIER = b"an earlier output"
-# Subjects named in a message: a file, a stream, the exhausted resource, or the data of a library. A failing
-# library may print its own message first.
+# Objects that a message may name: a file, a stream, memory, or the database of UDUNITS. A library may print a message before.
 NAMED = re.compile(r"pcor: [^\n]*(\.nc|\.toml|\.html|\.json|standard output|memory|UDUNITS)[^\n]*\n\Z")
 
 
-class Failing:
-    """A command with a separate folder for its outputs."""
+class Command:
+    """Command with a folder for its outputs."""
 
     def __init__(self, given, words, outputs):
         self.given = given
@@ -49,8 +48,9 @@ class Failing:
         return subprocess.run([self.given.tool, *self.words], capture_output=True, timeout=300, cwd=self.path,
                               env={**os.environ, "LD_PRELOAD": str(self.given.shim), **environment})
 
-    def without(self, kind, number):
-        """Error if that call fails, "" without an error; None if the run makes fewer calls."""
+    def fail_call(self, kind, number):
+        """Runs the command with one failing call. Returns the violated requirements (empty if all are met), or
+        None if the run makes fewer calls."""
         done = self.run(FAILING_CALL=kind, FAILING_NUMBER=str(number), FAILING_REPORT=str(self.report))
         if not self.report.exists():
             return None
@@ -62,18 +62,18 @@ class Failing:
         if done.returncode not in (0, 1) and not stopped_by_library and not stopped:
             wrong.append(f"exit status {done.returncode}")
         if done.returncode == 1 and (message.count("pcor: ") != 1 or not NAMED.search(message)):
-            wrong.append(f"its message is {message!r}")
+            wrong.append(f"message {message!r}")
         if done.returncode == 0 and message:
-            wrong.append(f"it succeeds with the message {message!r}")
+            wrong.append(f"success with the message {message!r}")
         for name, good in self.good.items():
-            wanted = (good,) if done.returncode == 0 else (EARLIER, good)
-            if not (self.path / name).exists() or (self.path / name).read_bytes() not in wanted:
-                wrong.append(f"{name} is another")
+            allowed = (good,) if done.returncode == 0 else (EARLIER, good)
+            if not (self.path / name).exists() or (self.path / name).read_bytes() not in allowed:
+                wrong.append(f"{name} is missing or different")
         if stopped and len({(self.path / name).read_bytes() == EARLIER for name in self.outputs}) == 2:
-            wrong.append("some outputs are new and some are not")
+            wrong.append("only some outputs are new")
         left = {path.name for path in self.path.iterdir()} - set(self.outputs)
         if left:
-            wrong.append(f"it leaves {', '.join(sorted(left))}")
+            wrong.append(f"remaining files {', '.join(sorted(left))}")
         return f"({call}) {'; '.join(wrong)}" if wrong else ""
 
 
@@ -81,7 +81,7 @@ def numbers(every):
     number = 1
     while True:
         yield number
-        number = number + 1 if every or number < 3 else number * 2 + 1
+        number = number + 1 if every or number < 3 else number * 4
 
 
 def main():
@@ -89,8 +89,8 @@ def main():
     options.add_argument("tool", type=Path)
     options.add_argument("shim", type=Path)
     options.add_argument("source", type=Path)
-    options.add_argument("--every", action="store_true", help="every call, which takes hours, not a sample of them")
-    options.add_argument("--kind", choices=KINDS, action="append", help="calls of this kind alone")
+    options.add_argument("--every", action="store_true", help="all calls instead of a sample; takes hours")
+    options.add_argument("--kind", choices=KINDS, action="append", help="only calls of this kind")
     given = options.parse_args()
     given.tool, given.shim = given.tool.resolve(), given.shim.resolve()
     data = given.source.resolve() / "data/scenarios"
@@ -106,10 +106,10 @@ def main():
             (("check", flight, "-m", model, "--report", "out.html", "--quiet"), ("out.html",)),
         )
         for words, outputs in commands:
-            command = Failing(given, words, outputs)
+            command = Command(given, words, outputs)
             for kind in given.kind or KINDS:
                 for number in numbers(given.every):
-                    wrong = command.without(kind, number)
+                    wrong = command.fail_call(kind, number)
                     if wrong is None:
                         break
                     runs += 1

@@ -1,4 +1,4 @@
-"""A real flight made clean: its own corrected pressures are the truth, and its noise is kept apart to be put back."""
+"""Real flight without noise: its corrected pressures are the truth; its noise is stored separately."""
 
 import os
 import zlib
@@ -8,10 +8,9 @@ import netCDF4
 import numpy
 
 FLIGHT = "GOTEX-rf06-C130-2004.nc"
-LAW = (0.0033746, 0.0179237, 0.0415025)  # a0, a1, a2 of the own system: what least squares finds on this flight
+LAW = (0.0033746, 0.0179237, 0.0415025)  # a0, a1, a2 of the first system, from least squares on this flight
 OTHER_LAW = (0.002047, 0.008890, 0.07119)  # of the second system, equation 18 of the memo
-# Variables that nimbus computed from the recorded pressures: they would reveal pressures that the case has
-# changed.
+# Variables that nimbus computed from recorded pressures; they would reveal the changes of a case.
 COMPUTED = {"PSFC", "PSFDC", "PSX", "PSXC", "PSFD1", "PSFD2", "PSURF", "QCFC", "QCFRC", "QCRC", "QCX", "QCXC", "XMACH2", "PCONE"}
 ROLES = {"recovery_temperature": "TTX", "vapor_pressure": "EDPC", "radome_dynamic_pressure": "QCR",
          "attack_differential_pressure": "ADIFR", "sideslip_differential_pressure": "BDIFR", "attack": "ATTACK",
@@ -38,15 +37,15 @@ def standard(series):
     return (series - series.mean()) / series.std()
 
 
-def least_squares_rest(y, columns):
+def least_squares_residual(y, columns):
     scaled = columns / numpy.sqrt((columns**2).mean(axis=0))
     return y - scaled @ numpy.linalg.lstsq(scaled, y, rcond=None)[0]
 
 
 class Air:
-    """The recorded series, the truth, and the noise of the second system against the own one."""
+    """Recorded series, truth, and noise of the difference between the second and the first system."""
 
-    run = slice(140, 2499)  # in the air, flaps in, without a break
+    run = slice(140, 2499)  # samples in flight, flaps retracted, without gaps
 
     def __init__(self):
         self.path = Path(os.environ["PCOR_FLIGHTS"]) / FLIGHT
@@ -65,20 +64,20 @@ class Air:
         other = raw["PSFRD"] * (1 + OTHER_LAW[0] + OTHER_LAW[1] * self.ratio) + OTHER_LAW[2] * raw["QCFR"]
         structure = numpy.column_stack([self.law, *(x[self.run] for x in (
             raw["QCF"] * self.ratio, raw["QCF"] * raw["ATTACK"] ** 2, self.hours))])
-        self.static_noise = least_squares_rest((other - self.p)[self.run], structure)
-        self.total_noise = least_squares_rest((raw["PSFRD"] + raw["QCFR"] - raw["PSFD"] - raw["QCF"])[self.run], structure)
+        self.static_noise = least_squares_residual((other - self.p)[self.run], structure)
+        self.total_noise = least_squares_residual((raw["PSFRD"] + raw["QCFR"] - raw["PSFD"] - raw["QCF"])[self.run], structure)
         self.covariance_root = root_of(self.static_noise)
 
     def surrogate(self, noise, how, draw):
-        """Noise with the autocorrelation of the recorded noise, not correlated with the flight."""
+        """Noise with the autocorrelation of `noise` that is not correlated with the flight."""
         ramp = numpy.linspace(noise[0], noise[-1], len(noise))
-        noise = noise - ramp + ramp.mean()  # its end meets its beginning
+        noise = noise - ramp + ramp.mean()  # periodic
         if how == "shift":
             made = numpy.roll(noise, draw.integers(150, len(noise) - 150))
         elif how == "phases":
             spectrum = numpy.fft.rfft(noise - noise.mean())
             made = numpy.fft.irfft(numpy.abs(spectrum) * numpy.exp(2j * numpy.pi * draw.random(len(spectrum))), len(noise))
-        elif how == "signs":  # stretches of at least 30 s between zeros
+        elif how == "signs":  # segments of at least 30 s between zeros
             made, sign, begin = numpy.roll(noise - noise.mean(), draw.integers(150, len(noise) - 150)), 1, 0
             zeros = numpy.flatnonzero(numpy.diff(numpy.sign(made))) + 1
             for end in [*zeros, len(made)]:
@@ -86,7 +85,7 @@ class Air:
                     sign = draw.choice((-1, 1))
                     made[begin:end] *= sign
                     begin = end
-        elif how == "fast":  # what changes within half a minute
+        elif how == "fast":  # without changes slower than 31 s
             made = numpy.roll(noise, draw.integers(150, len(noise) - 150))
             made = made - numpy.convolve(numpy.pad(made, 15, mode="reflect"), numpy.ones(31) / 31, "valid")
         else:
@@ -97,7 +96,7 @@ class Air:
         return whole
 
     def series(self, noise=None, total=None):
-        """Records of a flight whose second system follows its law except for the noise (hPa)."""
+        """Series of a flight whose second system follows its law, with added noise of static and total pressure, hPa."""
         made, zero = dict(self.raw), numpy.zeros(self.size)
         noise, total = (zero if x is None else x for x in (noise, total))
         whole = self.p + self.q + total
@@ -107,9 +106,9 @@ class Air:
         return made
 
     def oracle_z(self, column):
-        """z of the known column, whose size is fitted together with the law under the recorded noise."""
-        rest = numpy.linalg.solve(self.covariance_root, numpy.column_stack([self.law, column[self.run]]))
-        return float(numpy.linalg.norm(least_squares_rest(rest[:, 3], rest[:, :3])))
+        """z of the size of a known column, fitted together with the law under the recorded noise."""
+        white = numpy.linalg.solve(self.covariance_root, numpy.column_stack([self.law, column[self.run]]))
+        return float(numpy.linalg.norm(least_squares_residual(white[:, 3], white[:, :3])))
 
     def write(self, path, series):
         with netCDF4.Dataset(self.path) as file, netCDF4.Dataset(path, "w") as copy:
@@ -132,17 +131,17 @@ class Air:
                 new[:] = numpy.nan_to_num(series["VLAMS"], nan=-32767.0)
 
 
-def root_of(noise, longest=400):
-    """The Cholesky root of the covariance, from the autocorrelation up to `longest` seconds."""
+def root_of(noise, max_lag=400):
+    """Cholesky root of the covariance, from the autocorrelation up to `max_lag` seconds."""
     centred, size = noise - noise.mean(), len(noise)
-    lags = numpy.array([centred[k:] @ centred[:size - k] for k in range(longest)]) / size
-    lags = numpy.concatenate([lags * (1 - numpy.arange(longest) / longest), numpy.zeros(size - longest)])
+    lags = numpy.array([centred[k:] @ centred[:size - k] for k in range(max_lag)]) / size
+    lags = numpy.concatenate([lags * (1 - numpy.arange(max_lag) / max_lag), numpy.zeros(size - max_lag)])
     index = numpy.abs(numpy.subtract.outer(numpy.arange(size), numpy.arange(size)))
     return numpy.linalg.cholesky(lags[index] + 1e-6 * numpy.eye(size))
 
 
 def with_memory(kind, size, draw):
-    """Noise with standard deviation 1: an OU process with the given time in seconds, or 1/f."""
+    """Noise with standard deviation 1: `kind` is "1/f" or the time constant of an Ornstein-Uhlenbeck process, s."""
     if kind == "1/f":
         spectrum = numpy.fft.rfft(draw.standard_normal(size))
         return standard(numpy.fft.irfft(spectrum / numpy.sqrt(numpy.maximum(numpy.arange(len(spectrum)), 1)), size))

@@ -1,8 +1,8 @@
-"""What is hidden: changes of the recorded series, where nature would make them, in sizes of s; and the right names.
+"""Hidden effects as changes of recorded series, and the effects that count as correct.
 
-An effect of the own static port lowers PSFD and raises QCF and QCR; one of the other port lowers PSFRD and raises QCFR.
-`right` are ids; those of the other system begin with "reference:". A foreign shape is one that the catalogue only
-approximates. Names of one family are right there, since its shape cannot be told from nature's.
+An effect of the first static port decreases PSFD and increases QCF and QCR; an effect of the second port decreases PSFRD and
+increases QCFR. `right` lists correct ids; ids of the second system start with "reference:". The catalogue only approximates
+a foreign shape, so all effects of its family count as correct.
 """
 
 from dataclasses import dataclass
@@ -15,10 +15,10 @@ from air import standard
 @dataclass(frozen=True)
 class Hidden:
     name: str
-    change: object  # (air, series, size): changes the series
+    change: object  # change(air, series, size) modifies the series
     right: tuple = ()
-    probe: float = 0.1  # a size whose residual is small and nearly linear
-    traced: tuple = ()  # recorded causes outside the catalogue
+    probe: float = 0.1  # size at which the residual is nearly linear in the size
+    traced: tuple = ()  # correct variables, for causes outside the catalogue
 
 
 def port(series, delta, other=False):
@@ -29,7 +29,7 @@ def port(series, delta, other=False):
 
 
 def at_port(name, right, shape, other=False):
-    """`shape` gives hPa in steady units of about 1."""
+    """Effect at a static port: delta-p is size * shape(air), hPa; the shapes are of the order of 1."""
     right = (right,) if isinstance(right, str) else right
     return Hidden(name, lambda air, series, size: port(series, size * shape(air), other),
                   tuple("reference:" + each for each in right) if other else right)
@@ -71,6 +71,7 @@ alpha = lambda air: air.raw["ATTACK"]
 beta = lambda air: air.raw["SSLIP"]
 load = lambda air: air.raw["ACINS"] / 9.80665
 roll = lambda air: numpy.sin(numpy.radians(air.raw["ROLL"]))
+constant = lambda air: numpy.ones(air.size)
 smooth = lambda x, n=5: numpy.convolve(numpy.pad(x, n // 2, mode="edge"), numpy.ones(n) / n, "valid")
 
 
@@ -80,11 +81,11 @@ def turn_rate(air):
 
 
 def inertial_attack(air):
-    """By pitch and climb, without the radome: it is correlated with the angle of attack."""
+    """Angle of attack from pitch and vertical speed, deg, without the radome."""
     return air.raw["PITCH"] - numpy.degrees(air.raw["VSPD"] / numpy.maximum(air.raw["TASX"], 40))
 
 
-PORT = {  # shapes of the catalogue at a static port
+PORT = {  # shapes of the catalogue
     "static-alpha-quad": lambda air: air.q * alpha(air) ** 2 / 1000,
     "static-beta-odd": lambda air: air.p * air.side / 80,
     "static-beta-even": lambda air: air.p * beta(air) ** 2 / 800,
@@ -92,7 +93,7 @@ PORT = {  # shapes of the catalogue at a static port
     "roll-static": lambda air: roll(air) * 7,
     "time-drift": lambda air: air.hours,
 }
-PORT_FOREIGN = {  # name: (ids that are right, shape)
+PORT_FOREIGN = {  # name: (correct ids, shape)
     "attack that saturates": (ATTACK, lambda air: air.q / 60 * numpy.tanh((alpha(air) - 3.2) / 0.6)),
     "attack with a knee": (ATTACK, lambda air: air.q / 60 * numpy.maximum(alpha(air) - 4.2, 0)),
     "attack by pitch and climb": (ATTACK, lambda air: air.q * inertial_attack(air) ** 2 / 1000),
@@ -106,22 +107,21 @@ PORT_FOREIGN = {  # name: (ids that are right, shape)
 OWN = [at_port(name, DRIFT if name == "time-drift" else name, shape) for name, shape in PORT.items()] + [
     of_lag("static-lag", "PSFD", ("static-lag",), extra="QCF"),
     on("static-leak", "PSFD", lambda air: (air.raw["PCAB"] - air.p) / 50, ("static-leak",), also=(("QCF", -1),)),
-    on("psfd-bias", "PSFD", lambda air: numpy.ones(air.size), ("psfd-bias",)),
+    on("psfd-bias", "PSFD", constant, ("psfd-bias",)),
     on("psfd-drift", "PSFD", lambda air: air.hours, DRIFT)]
 OWN_FOREIGN = [at_port(name, *rest) for name, rest in PORT_FOREIGN.items()] + [
     of_lag("lag of second order", "PSFD", ("static-lag",), extra="QCF", twice=True),
     on("leak by the cabin pressure alone", "PSFD", lambda air: numpy.sqrt(air.raw["PCAB"] / 2), ("static-leak",),
        also=(("QCF", -1),))]
 OTHER = [at_port(f"other {name}", DRIFT if name == "time-drift" else name, shape, True) for name, shape in PORT.items()]
-OTHER += [on("other psfd-bias", "PSFRD", lambda air: numpy.ones(air.size), ("reference:psfd-bias",)),
+OTHER += [on("other psfd-bias", "PSFRD", constant, ("reference:psfd-bias",)),
           of_lag("other static-lag", "PSFRD", ("reference:static-lag",), extra="QCFR")]
 OTHER_FOREIGN = [at_port(f"other {name}", *rest, True) for name, rest in PORT_FOREIGN.items()]
-degrees = lambda air: numpy.ones(air.size)
 LASER = [at_port(name, DRIFT if name == "time-drift" else name, shape) for name, shape in PORT.items()] + [
-    on("qcf-zero", "QCF", degrees, ("qcf-zero",)), on("qcf-drift", "QCF", lambda air: air.hours, ("qcf-drift",)),
+    on("qcf-zero", "QCF", constant, ("qcf-zero",)), on("qcf-drift", "QCF", lambda air: air.hours, ("qcf-drift",)),
     on("pitot-angle", "QCF", lambda air: -air.q * (alpha(air) ** 2 + beta(air) ** 2) / 1500, ("pitot-angle",)),
     of_lag("total-lag", "QCF", ("total-lag", "qcf-lag")),
-    on("temp-offset", "TTX", degrees, ("temp-offset", "recovery-factor")),
+    on("temp-offset", "TTX", constant, ("temp-offset", "recovery-factor")),
     on("temp-drift", "TTX", lambda air: air.hours, ("temp-drift",)), of_lag("temp-lag", "TTX", ("temp-lag",), 2.0),
     of_lag("clock-skew", "VLAMS", ("clock-skew",), 0.3),
     on("lams-scale", "VLAMS", lambda air: air.raw["TASX"] / 1000, ("lams-scale",)),
@@ -134,7 +134,7 @@ LASER_FOREIGN = [at_port(name, *rest) for name, rest in PORT_FOREIGN.items()] + 
     on("pitot with a knee", "QCF", lambda air: -numpy.maximum(alpha(air) ** 2 + beta(air) ** 2 - 12, 0) / 10,
        ("pitot-angle",))]
 
-# Recorded causes outside the catalogue, at the own port or the other: variable, shape of the standardised series
+# Recorded causes outside the catalogue: variable, shape of the standardised series
 SHAPES = {"line": lambda x: x, "square": lambda x: x**2 - 1, "step": lambda x: (x > 0) * 2.0, "wave": lambda x: numpy.sin(2 * x)}
 CAUSES = (("SWT", "line"), ("RSTT", "line"), ("XUCIT1", "line"), ("GGTRK", "wave"), ("PTMP_RPO", "square"),
           ("FTMP_RWO", "line"), ("INTEMP", "line"), ("RDMATEMP_FCR", "step"), ("XFO3T", "line"), ("RSTB", "step"),
@@ -142,7 +142,7 @@ CAUSES = (("SWT", "line"), ("RSTT", "line"), ("XUCIT1", "line"), ("GGTRK", "wave
 
 
 def like(air, cause):
-    """Recorded variables so closely correlated with a cause that they count as correct."""
+    """Recorded variables whose correlation with the cause exceeds 0.85; they count as correct."""
     base = cause[air.run]
     with numpy.errstate(all="ignore"):
         return tuple(name for name, values in air.raw.items() if abs(numpy.corrcoef(base, values[air.run])[0, 1]) > 0.85)

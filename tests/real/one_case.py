@@ -1,4 +1,4 @@
-"""One case: a flight with a secret, a run of the tool as by a user, and the results."""
+"""One case: a flight with a hidden effect, runs of the tool, and the results."""
 
 import json
 import tempfile
@@ -14,15 +14,15 @@ import scoring
 import strength
 from tool_runs import ToolError
 
-WORSE, LADDER = 0.02, 0.0005  # hPa
-LARGEST = 3.0  # hPa rms of what is hidden, before the law takes any of it
+HARM, WORSE_STEP = 0.02, 0.0005  # hPa, significant increases
+MAX_RMS = 3.0  # hPa, of a hidden effect before the law absorbs a part
 
 
 @dataclass(frozen=True)
 class Case:
     group: str
-    hidden: str  # name in injected.py, or the raw variable of a null
-    z: float = 0.0  # of the oracle; of a null in a sensor the noise, hPa
+    hidden: str  # name in injected.py; for a null in a sensor the raw variable
+    z: float = 0.0  # size of the effect, see Air.oracle_z; for a null in a sensor the noise, hPa
     noise: str = "shift"
     memory: str = ""
     reference: str = "static"  # or laser
@@ -31,12 +31,12 @@ class Case:
 
     @property
     def label(self):
-        what = f"{self.memory} {self.z:g} hPa" if self.memory else f"z {self.z:g}" if self.z else "nothing"
-        return f"{self.group}: {self.hidden}, {what}, noise {self.noise}, {self.reference}, seed {self.seed}"
+        size = f"{self.memory} {self.z:g} hPa" if self.memory else f"z {self.z:g}" if self.z else "nothing"
+        return f"{self.group}: {self.hidden}, {size}, noise {self.noise}, {self.reference}, seed {self.seed}"
 
 
 class Stage:
-    """A folder with the models of a user with one flight."""
+    """Folder with the models of the user, for the cases of one process."""
 
     def __init__(self, tool, air, parent):
         self.tool, self.air = tool, air
@@ -53,7 +53,7 @@ class Stage:
         return ("--reference", f"static:{self.folder / 'second.toml'}") if reference == "static" else ()
 
     def series(self, case, noisy=True):
-        """The clean flight, with the noise of the reference alone."""
+        """Series of the flight without an effect, with noise of the reference only."""
         air, draw = self.air, airs.generator(case.label, "noise")
         noise = air.surrogate(air.static_noise, case.noise if noisy else "none", draw)
         total = air.surrogate(air.total_noise, case.noise if noisy else "none", draw)
@@ -73,20 +73,20 @@ class Stage:
         return strength.residual_of(self.tool, flight, self.folder / f"{case.reference}.toml", self.folder, arguments)
 
     def size_of(self, case, hidden):
-        """The size that the oracle sees at the wanted z, from the residual of a probe without noise."""
+        """Size of the effect for the requested z, its rms, hPa, and its z, from a noiseless residual of the size `probe`."""
         series = self.series(case, noisy=False)
         hidden.change(self.air, series, hidden.probe)
         column = self.residual(case, series) / hidden.probe
         column = numpy.nan_to_num(column)
         rms, z = numpy.sqrt((column[self.air.run] ** 2).mean()), self.air.oracle_z(column)
-        size = min(case.z / z, LARGEST / rms)
+        size = min(case.z / z, MAX_RMS / rms)
         return size, size * rms, size * z
 
     def static_error(self, flight, model):
         output = self.folder / "processed.nc"
         self.tool.run("process", flight, "-m", model, "-o", output, "--quiet")
-        (found,) = strength.read(output, "PSXC")
-        error = (found - self.air.p)[self.air.run]
+        (corrected,) = strength.read(output, "PSXC")
+        error = (corrected - self.air.p)[self.air.run]
         return float(numpy.sqrt(numpy.nanmean(error**2)))
 
 
@@ -100,7 +100,7 @@ def hidden_of(case, air):
 
 
 def disturb(case, air, series):
-    """A null in a sensor: its own noise, with memory; ADIFR, BDIFR and pressures in hPa, TTX in 3 K per hPa."""
+    """Adds noise with memory to one raw variable: case.z in hPa; TTX gets 3 K per hPa, VLAMS the equivalent in m/s."""
     draw = airs.generator(case.label, "sensor")
     noise = case.z * airs.with_memory(case.memory, air.size, draw)
     if case.hidden == "VLAMS":
@@ -108,7 +108,7 @@ def disturb(case, air, series):
     for name, factor in {"TTX": {"TTX": 3}, "second": {"PSFRD": 1}}.get(case.hidden, {case.hidden: 1}).items():
         series[name] = series[name] + factor * noise
     for angle, sensor in (("ATTACK", "ADIFR"), ("SSLIP", "BDIFR")):
-        if case.hidden in (sensor, "QCR"):  # the angles are computed from the radome
+        if case.hidden in (sensor, "QCR"):  # the recorder computes the angles from the radome pressures
             with numpy.errstate(all="ignore"):
                 change = series[sensor] / series["QCR"] - air.raw[sensor] / air.raw["QCR"]
                 per_ratio = 1 / numpy.polyfit(air.raw[angle][air.run], (air.raw[sensor] / air.raw["QCR"])[air.run], 1)[0]
@@ -116,7 +116,7 @@ def disturb(case, air, series):
 
 
 def run_case(stage, case):
-    """The facts of a case as a dictionary for JSON. An error of the tool is a fact, too."""
+    """Result of a case as a dictionary for JSON. A failed run of the tool has the key "error"."""
     begin, tool, air, folder = time.monotonic(), stage.tool, stage.air, stage.folder
     facts = {"group": case.group, "label": case.label, "hidden": case.hidden, "z": case.z, "kept": case.kept}
     try:
@@ -137,7 +137,7 @@ def run_case(stage, case):
         facts |= scoring.summary_of(diagnosis) | score_of(diagnosis, improved, hidden)
         facts["static_before"] = stage.static_error(flight, fitted)
         facts["static_after"] = stage.static_error(flight, best)
-        facts["harm"] = facts["static_after"] > facts["static_before"] + WORSE
+        facts["harm"] = facts["static_after"] > facts["static_before"] + HARM
     except (ToolError, OSError, ValueError, KeyError, TypeError) as error:
         facts["error"] = f"{type(error).__name__}: {error}"
     facts["seconds"] = round(time.monotonic() - begin, 2)
@@ -147,15 +147,15 @@ def run_case(stage, case):
 def score_of(diagnosis, improved, hidden):
     sets = [scoring.names_in(finding) for finding in diagnosis["findings"]]
     verdict, traced = scoring.verdict_of(diagnosis), scoring.traced_in(diagnosis)
-    ladder = [step["rms_holdout_hpa"] for step in improved["steps"] if step.get("rms_holdout_hpa") is not None]
-    score = {"added": [step["added"] for step in improved["steps"] if step["added"]], "ladder": ladder,
-             "ladder_worse": any(later > earlier + LADDER for earlier, later in zip(ladder, ladder[1:]))}
+    held_out = [step["rms_holdout_hpa"] for step in improved["steps"] if step.get("rms_holdout_hpa") is not None]
+    score = {"added": [step["added"] for step in improved["steps"] if step["added"]], "ladder": held_out,
+             "ladder_worse": any(later > earlier + WORSE_STEP for earlier, later in zip(held_out, held_out[1:]))}
     right = set(hidden.right) if hidden else set()
     good = [bool(right & set(names)) for names in sets]
     score |= {"in_set": any(good), "identified": any(good) and len(sets[good.index(True)]) == 1 and verdict == "identified",
               "nothing_else": all(good), "named": bool(sets), "wrong": not all(good) and verdict != "partial",
               "sure_and_wrong": verdict == "identified" and not all(good),
-              "both_told": any(good) and any(twin(name) in names for names, right_one in zip(sets, good) if right_one
+              "both_told": any(good) and any(counterpart(name) in names for names, right_one in zip(sets, good) if right_one
                                              for name in right & set(names)),
               "silent": verdict == "silent", "structure": verdict != "silent" and not sets, "any_traced": bool(traced)}
     if hidden and hidden.traced:
@@ -164,6 +164,7 @@ def score_of(diagnosis, improved, hidden):
     return score
 
 
-def twin(name):
+def counterpart(name):
+    """The same effect of the other system."""
     return name.removeprefix("reference:") if name.startswith("reference:") else "reference:" + name
 

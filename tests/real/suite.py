@@ -1,4 +1,4 @@
-"""Which cases there are. Two thirds are open; the others are kept for the end."""
+"""Cases of the suite. Two thirds are open; the others are reserved for a final test (`kept`)."""
 
 import itertools
 import random
@@ -7,7 +7,7 @@ import injected
 from one_case import Case
 
 SALT = "air-1"
-SIZES = (7, 21, 70)  # z of an oracle that knows the column: 1, 3 and 10 times what can be seen
+SIZES = (7, 21, 70)  # z in a fit that knows the column, see Air.oracle_z: about 1, 3 and 10 times the detection limit
 SURROGATES = ("shift", "phases", "signs")
 SENSORS = ("PSFD", "QCF", "QCR", "ADIFR", "BDIFR", "TTX", "VLAMS", "second")
 MEMORIES, NOISES = ("5", "60", "600", "1/f"), (0.01, 0.02, 0.05, 0.1)  # s; hPa
@@ -17,7 +17,7 @@ HIDDEN = (("own", injected.OWN, "static", 22), ("own, foreign shape", injected.O
 
 
 def whole(salt=SALT):
-    """About 225 cases: 150 open, 75 kept."""
+    """All 215 cases: 146 open, 69 reserved."""
     made = []
     for group, effects, reference, share in HIDDEN:
         mixed = [(effect.name, SIZES[(k + n) % 3]) for n in range(3) for k, effect in enumerate(effects)]
@@ -44,10 +44,10 @@ def whole(salt=SALT):
 
 
 def quick(cases):
-    """About 24 of the open cases, of every group some."""
+    """26 open cases, some of each group."""
     made = []
     for group in dict.fromkeys(case.group for case in cases):
         some = [case for case in cases if case.group == group and not case.kept and case.z != SIZES[0]]
-        wanted = {"null in a sensor": 5, "outside": 3, "second ill, foreign": 1, "second ill": 2, "null in the residual": 3}.get(group, 3)
-        made += random.Random(f"quick {group}").sample(some, min(wanted, len(some)))
+        count = {"null in a sensor": 5, "outside": 3, "second ill, foreign": 1, "second ill": 2, "null in the residual": 3}.get(group, 3)
+        made += random.Random(f"quick {group}").sample(some, min(count, len(some)))
     return made

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-/// Scalars with exactly the operations that `pcor/physics/scalar.hpp` requires. A formula that compiles for
-/// them contains no hidden `double`, no `std::sqrt` by name, and no `if` on a comparison.
+/// Scalars with exactly the operations that `pcor/physics/scalar.hpp` requires. A formula that compiles with
+/// these scalars contains no hidden `double`, no qualified `std::sqrt`, and no `if` on a comparison.
 namespace archetype {
 
-/// The truth of one comparison. Like the mask of a vector pack it is not a `bool`.
+/// Result of one comparison. Like the mask of a SIMD vector it is not a `bool`.
 class Truth {
  public:
   explicit Truth(bool value) : value_(value) {}
@@ -19,17 +19,17 @@ class Truth {
   bool value_;
 };
 
-/// Purpose of the scalar: the physics alone, or users' formulas too, which call more functions.
+/// Use of the scalar: physics, or formulas of users, which call more functions.
 enum class Use { physics, formulas };
 
-/// A number without implicit conversions.
+/// Number without implicit conversions.
 template <Use use = Use::physics>
 class Number {
  public:
   Number() = default;
   explicit Number(double value) : value_(value) {}
 
-  /// The value, for the test alone.
+  /// Value, for tests only.
   double value() const { return value_; }
 
   friend Number operator+(const Number& a, const Number& b) { return Number(a.value_ + b.value_); }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-/// Air in which the tests fly.
+/// Standard temperature and flight envelopes for tests.
 namespace atmosphere {
 
 /// ISO 2533 standard temperature, K, at the pressure `p`, hPa: lapse rate 6.5 K/km up to 226.32 hPa,
@@ -15,7 +15,6 @@ inline double standard_temperature(double p) {
   return 288.15 * std::pow(p / 1013.25, pcor::constants::gas_constant_dry_air * 0.0065 / 9.80665);
 }
 
-/// Where an aircraft is and how fast it flies.
 struct FlightState {
   double p;  ///< static pressure, hPa
   double v;  ///< true airspeed, m/s

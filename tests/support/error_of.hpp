@@ -9,7 +9,7 @@
 
 namespace pcor::test {
 
-/// The error that `work` throws, if any.
+/// Error that `work` throws; nullopt if it throws no pcor::Error.
 template <class Work>
 std::optional<Error> error_of(const Work& work) {
   try {
@@ -20,7 +20,7 @@ std::optional<Error> error_of(const Work& work) {
   return std::nullopt;
 }
 
-/// A text with `name`, which may be a number, and not only as a part of a longer name or number.
+/// Matches a text that contains `name` (a name or number), but not only as a part of a longer name or number.
 MATCHER_P(HasName, name, "has the name " + testing::PrintToString(name)) {
   const std::string text(arg);
   const auto continues = [&text](std::size_t i) {
@@ -34,7 +34,7 @@ MATCHER_P(HasName, name, "has the name " + testing::PrintToString(name)) {
   return false;
 }
 
-/// An error with this code. Its message is one line, which has all these names and numbers.
+/// Matches an error with this code whose message is one line and contains all names and numbers.
 template <class... Names>
 auto IsError(Error::Code code, const Names&... names) {
   using testing::AllOf;

@@ -2,7 +2,7 @@
 
 #include <pcor/model/quantity.hpp>
 
-/// The values between which flight finds a quantity, in its unit.
+/// Range of a quantity in flight, in its unit.
 struct InputRange {
   double lower;
   double upper;

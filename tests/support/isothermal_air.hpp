@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
-/// Flights in memory through air of one temperature, with sensors that are right: residuals against their
-/// heights and speeds follow from a few lines of algebra.
+/// Flights in memory through isothermal air, with exact sensors. Residuals against heights and speeds have
+/// simple closed forms.
 namespace made {
 
 inline constexpr double air_temperature = 260.0;  // K
 
-/// A model of the pair PSFD/QCF with an ambient temperature and these effects of the catalogue.
+/// Model of the pair PSFD/QCF with ambient temperature and effects of the catalogue: id, first parameter.
 inline pcor::ModelDefinition air_model(const std::vector<std::pair<std::string, double>>& effects = {}) {
   pcor::ModelDefinition file;
   file.model.name = "made";
@@ -31,7 +31,7 @@ inline pcor::ModelDefinition air_model(const std::vector<std::pair<std::string, 
   return file;
 }
 
-/// Half an hour at 1 Hz, of which the pressures follow from heights and airspeeds.
+/// Flight at 1 Hz whose pressures are computed from heights and airspeeds.
 /// @param height geopotential, m @param airspeed m/s
 inline pcor::FlightSamples air_flight(const std::vector<double>& height,
                                       const std::vector<double>& airspeed) {
@@ -60,15 +60,16 @@ inline pcor::FlightSamples air_flight(const std::vector<double>& height,
   return samples;
 }
 
-/// The residuals of a flight, with the parameters of the model.
+/// Residuals of a flight, with the parameters of the model.
 inline std::vector<double> residuals_of(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model,
                                         const pcor::Reference& reference) {
   const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);
   return residuals.values(residuals.parameters().data());
 }
 
-/// The largest difference between the derivatives by the first parameter and finite differences of the
-/// residuals, over the largest derivative, at every tenth sample: residuals of a part are those of the whole.
+/// Largest difference between the derivatives with respect to the first parameter and finite differences,
+/// divided by the largest finite difference. Evaluates every tenth sample, so it also tests the evaluation of
+/// a subset.
 inline double derivative_error(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model,
                                const pcor::Reference& reference, double step) {
   const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);

@@ -10,8 +10,8 @@
 
 namespace pcor::test {
 
-/// Makes a small netCDF file for a test: define, then put values; the file is complete when this goes out of
-/// scope. Written against the C library alone, so that the readers and writers under test are not part of it.
+/// Writes a small netCDF file for a test: define a variable, then set its values. The destructor closes the
+/// file. Uses only the C library, independently of the tested readers and writers.
 class NetcdfMaker {
  public:
   explicit NetcdfMaker(const std::filesystem::path& path, int mode = NC_NETCDF4) {
@@ -23,7 +23,7 @@ class NetcdfMaker {
 
   int id() const { return id_; }
 
-  /// Length 0 (NC_UNLIMITED) is the unlimited dimension.
+  /// Length 0 (NC_UNLIMITED) makes the unlimited dimension.
   int dimension(const std::string& name, std::size_t length) {
     int number = 0;
     check(nc_def_dim(id_, name.c_str(), length, &number));
@@ -37,7 +37,7 @@ class NetcdfMaker {
     return number;
   }
 
-  /// The text as given; put the trailing NUL of old writers into it.
+  /// The text is written unchanged; old writers append a NUL.
   void text(int variable, const std::string& name, const std::string& value) {
     check(nc_put_att_text(id_, variable, name.c_str(), value.size(), value.data()));
   }
@@ -46,7 +46,7 @@ class NetcdfMaker {
     check(nc_put_att_double(id_, variable, name.c_str(), type, values.size(), values.data()));
   }
 
-  /// All values of a variable; the first dimension is as long as they need.
+  /// Writes all values of a variable; the number of values determines the first dimension.
   void values(int variable, const std::vector<double>& values) {
     nc_enddef(id_);
     int rank = 0, dimensions[NC_MAX_VAR_DIMS];
@@ -67,7 +67,7 @@ class NetcdfMaker {
     nc_redef(id_);
   }
 
-  /// `Time` as NCAR writes it now: seconds since midnight.
+  /// Variable `Time` in the present form of NCAR: seconds since midnight.
   int time(const std::vector<double>& seconds,
            const std::string& units = "seconds since 2004-02-18 00:00:00 +0000", int type = NC_INT) {
     time_dimension = dimension("Time", NC_UNLIMITED);
@@ -77,7 +77,7 @@ class NetcdfMaker {
     return number;
   }
 
-  /// A float variable over (Time), or (Time, spsN) with a rate above 1.
+  /// Float variable over (Time), or over (Time, spsN) if the rate N exceeds 1.
   int series(const std::string& name, const std::string& units, const std::vector<double>& data,
              int rate = 1) {
     std::vector<int> dimensions{time_dimension};
@@ -105,7 +105,7 @@ class NetcdfMaker {
   int id_ = 0;
 };
 
-/// Makes a file with these times, seconds since midnight. @param fill adds the rest
+/// Writes a file with times, seconds since midnight. @param fill adds other variables
 template <class Fill>
 void make_flight(const std::filesystem::path& path, const std::vector<double>& seconds, const Fill& fill,
                  int mode = NC_NETCDF4) {
@@ -114,7 +114,7 @@ void make_flight(const std::filesystem::path& path, const std::vector<double>& s
   fill(maker);
 }
 
-/// `count` numbers from `first` on, one apart.
+/// `count` numbers: first, first + 1, ...
 inline std::vector<double> sequence(double first, std::size_t count) {
   std::vector<double> numbers(count);
   for (std::size_t i = 0; i < count; ++i) numbers[i] = first + static_cast<double>(i);

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-// Noise of a series of samples each second that is slower and less tidy than an autoregression.
+// Noise of a series at 1 Hz with drift, 1/f noise, bursts and faults.
 
 namespace pcor::test {
 
@@ -13,9 +13,9 @@ struct Nuisance {
   double drift = 0.0;       ///< hPa
   double drift_time = 1.0;  ///< s
   double flicker = 0.0;     ///< rms of 1/f noise in a decade of frequency, hPa
-  bool bursts = false;      ///< half a minute with five times a noise of 0.3 hPa, every ten minutes
-  bool stuck = false;       ///< the series is constant for a minute
-  bool is_off = false;      ///< zero, gain and drift of a pressure are off by draws of their usual doubts
+  bool bursts = false;      ///< noise of 1.5 hPa for 30 s every 10 minutes
+  bool stuck = false;       ///< constant values for 60 s
+  bool is_off = false;      ///< random zero, gain and drift of a pressure, of typical size
 };
 
 inline void add_process(std::vector<double>& series, std::mt19937_64& engine, double rms, double memory) {
@@ -32,7 +32,8 @@ inline void add_nuisance(std::vector<double>& series, unsigned seed, const Nuisa
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
   if (nuisance.drift > 0.0) add_process(series, engine, nuisance.drift, nuisance.drift_time);
-  // Processes an octave apart of equal rms have a spectrum of 1/f between them; 3.3 octaves are a decade.
+  // A sum of processes with equal rms and time constants one octave apart has a 1/f spectrum; a decade
+  // has 3.3 octaves.
   for (double memory = 2.0; nuisance.flicker > 0.0 && memory < 8000.0; memory *= 2.0)
     add_process(series, engine, nuisance.flicker / std::sqrt(3.3), memory);
   if (nuisance.is_off) {

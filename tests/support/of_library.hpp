@@ -4,10 +4,10 @@
 
 namespace pcor::test {
 
-/// The function `name` of a shared library that a function of the test, `this_one`, replaces, so that the
-/// tested code meets a failing library.
+/// Function `name` of a shared library that a function of the test replaces to simulate a failing library.
+/// The first argument, the replacement, determines the type.
 template <class Function>
-Function* of_library(Function* /*this_one*/, const char* name) {
+Function* of_library(Function* /*replacement*/, const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 

@@ -1,1 +1,1 @@
-// Source file that CMake requires in addition to the headers.
+// CMake requires a source file in addition to the headers.

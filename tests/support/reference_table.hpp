@@ -11,7 +11,7 @@
 
 namespace pcor::test {
 
-/// The reference values of NCAR nimbus in data/reference, by column. See the README there.
+/// Reference values of NCAR nimbus by column, see data/reference/README.md.
 class ReferenceTable {
  public:
   ReferenceTable() {

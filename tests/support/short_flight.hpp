@@ -20,7 +20,7 @@ inline std::string scenario_text(const std::string& scenario) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A flight of a scenario with further lines, simulated once.
+/// Flight of a scenario with additional lines `more`, simulated once.
 inline std::filesystem::path simulated(const std::string& scenario, const std::string& more = "") {
   static const TemporaryDirectory directory;
   static std::map<std::string, std::filesystem::path> flights;
@@ -32,7 +32,7 @@ inline std::filesystem::path simulated(const std::string& scenario, const std::s
   return path;
 }
 
-/// A quarter of an hour of the C-130 with the laser and a few minutes of everything, simulated once.
+/// Flight of the C-130 of 15 minutes with laser and short manoeuvres, simulated once.
 inline const std::filesystem::path& short_flight() {
   static const TemporaryDirectory directory;
   static const std::filesystem::path path = [] {
@@ -42,7 +42,7 @@ inline const std::filesystem::path& short_flight() {
   return path;
 }
 
-/// The law with which that flight was simulated, and the variable of the laser.
+/// Model of the simulated `short_flight`, with the laser.
 inline ModelDefinition laser_model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 }  // namespace pcor::test

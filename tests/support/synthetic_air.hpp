@@ -11,8 +11,8 @@
 #include <pcor/physics/moist_air.hpp>
 #include "campaign/flight_air.hpp"
 
-/// Flights in memory through an atmosphere that is known in closed form: an isothermal or linear profile of
-/// temperature over geopotential height, in hydrostatic balance.
+/// Flights in memory through an atmosphere in closed form: temperature is linear in geopotential height, in
+/// hydrostatic balance.
 namespace made {
 
 using namespace pcor::internal;
@@ -22,16 +22,16 @@ struct AirPlan {
   unsigned seed = 1;
   double ground_temperature = 290.0;  ///< K
   double lapse = 6.5e-3;              ///< K/m
-  double low = 1000.0;                ///< geopotential m, of the climbs and descents
+  double low = 1000.0;                ///< lowest and highest height, geopotential m
   double high = 6000.0;
-  double period = 3600.0;   ///< s, of a climb and a descent
+  double period = 3600.0;   ///< s, for a climb and a descent
   double slope_east = 0.0;  ///< slope of isobars
   double slope_north = 0.0;
-  double offset = 0.0;  ///< the thermometer reads too high by offset + gain t, t in degC, K
+  double offset = 0.0;  ///< K; error of the thermometer: offset + gain t, t in degC
   double gain = 0.0;
   double gps = 0.0;         ///< noise of the GPS height, m
   double gps_memory = 0.0;  ///< s
-  double turning = 1500.0;  ///< s for a full turn of the heading, flown in a wide circle
+  double turning = 1500.0;  ///< s, for a full circle
   double latitude = 40.0;   ///< deg
 };
 
@@ -49,13 +49,13 @@ inline pcor::internal::FlightAir air(const AirPlan& plan) {
   double north = 0.0;
   for (std::size_t i = 0; i < plan.seconds; ++i) {
     const auto t = static_cast<double>(i);
-    // A triangle with round corners: climbs and descents at a steady rate.
+    // Triangle with round corners: climbs and descents at a constant rate.
     const double wave = std::asin(0.98 * std::sin(2.0 * M_PI * (t / plan.period - 0.25))) / std::asin(0.98);
     const double height = 0.5 * (plan.low + plan.high) + 0.5 * (plan.high - plan.low) * wave;
     const double heading = 360.0 * std::fmod(t / plan.turning, 1.0);
     const double to_east = 120.0 * std::sin(heading * radians_per_degree);
     const double to_north = 120.0 * std::cos(heading * radians_per_degree);
-    // The column is lifted by the slope: where isobars are higher, this height has the air of a lower one.
+    // Isobars slope, so the air at `height` is that of the height `level` at the start.
     const double level = height - plan.slope_east * east - plan.slope_north * north;
     const double temperature = plan.ground_temperature - plan.lapse * level;
     const double exponent = gravity / (gas_constant * plan.lapse);
@@ -67,8 +67,8 @@ inline pcor::internal::FlightAir air(const AirPlan& plan) {
     air.flying.push_back(true);
     air.pressure.push_back(1000.0 * std::pow(temperature / plan.ground_temperature, exponent));
     air.temperature.push_back(shown);
-    // At 120 m/s and with an angle of attack that increases with the height, about 2 deg in a climb more
-    // than in a descent.
+    // Speed 120 m/s. The angle of attack increases with height and is about 2 deg larger in climbs than in
+    // descents.
     air.dynamic.push_back(0.5 * air.pressure.back() / (gas_constant * temperature) * 120.0 * 120.0);
     air.attack_ratio.push_back(-0.2 + 1e-5 * height + 0.02 * std::cos(2.0 * M_PI * (t / plan.period - 0.25)));
     air.airspeed.push_back(120.0);
@@ -77,7 +77,7 @@ inline pcor::internal::FlightAir air(const AirPlan& plan) {
     const double keeps = plan.gps_memory > 0.0 ? std::exp(-1.0 / plan.gps_memory) : 0.0;
     slow = keeps * slow + std::sqrt(1.0 - keeps * keeps) * normal(engine);
     air.geopotential_height.push_back(height + plan.gps * slow);
-    air.height.push_back(air.geopotential_height.back());  // the geometric one differs by 0.5 % at most
+    air.height.push_back(air.geopotential_height.back());  // the geometric height differs by at most 0.5 %
     air.east_speed.push_back(to_east);
     air.north_speed.push_back(to_north);
     east += to_east;

@@ -9,26 +9,26 @@
 #include <string>
 #include <vector>
 
-/// Flights in memory whose truth is known: a reference pressure, and correlated noise.
+/// Flights in memory with known delta-p, a reference pressure and correlated noise.
 namespace made {
 
 struct Plan {
   std::size_t samples = 3600;
   unsigned seed = 1;
   double noise = 0.3;         ///< hPa
-  double memory = 0.7;        ///< correlation of the noise from one sample to the next
+  double memory = 0.7;        ///< correlation of the noise of consecutive samples
   double outliers = 0.0;      ///< share of the samples
   double outlier_size = 5.0;  ///< hPa
-  /// Delta-p of the truth at a sample, hPa, from the pressures and the ratio ADIFR/QCR.
+  /// True delta-p, hPa, as a function of the pressures, hPa, the ratio ADIFR/QCR, and the time, s.
   double (*defect)(double p, double q, double ratio, double time) = nullptr;
 };
 
-/// Equation 18 of the memo for PSFD.
+/// Equation 18 of Cooper (2012) for PSFD.
 inline double equation_18(double p, double q, double ratio, double) {
   return p * (0.004127875 + 0.021279816 * ratio) + 0.030849643 * q;
 }
 
-/// An hour or so with changes of height, speed and angle of attack that are not tied to each other, at 1 Hz.
+/// Flight at 1 Hz with uncorrelated changes of height, speed and angle of attack.
 inline pcor::FlightSamples flight(const Plan& plan) {
   pcor::FlightSamples samples;
   samples.name = "made-" + std::to_string(plan.seed);
@@ -70,7 +70,7 @@ inline std::shared_ptr<const pcor::FlightSamples> shared(const Plan& plan) {
   return std::make_shared<const pcor::FlightSamples>(flight(plan));
 }
 
-/// A model of the given effects of the catalogue at their neutral values.
+/// Model of the given effects with neutral coefficients.
 inline pcor::ModelDefinition model(const std::vector<std::string>& effects) {
   pcor::ModelDefinition file;
   file.model.name = "made";
@@ -84,7 +84,7 @@ inline pcor::ModelDefinition model(const std::vector<std::string>& effects) {
 
 inline pcor::References pressure_reference() { return {pcor::pressure_reference("PS_A")}; }
 
-/// The reference pressure of a flight that `flight` made, hPa.
+/// Reference pressure of a flight from `flight`, hPa.
 inline std::vector<double>& reference_pressure(pcor::FlightSamples& samples) {
   return samples.reference.columns.front().second;
 }

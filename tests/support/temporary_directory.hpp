@@ -26,7 +26,7 @@ class TemporaryDirectory {
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
 
-  /// Number of files and directories in it, including hidden ones.
+  /// Number of files and directories, including hidden ones.
   std::size_t entries() const {
     const std::filesystem::directory_iterator begin(path_), end;
     return static_cast<std::size_t>(std::distance(begin, end));

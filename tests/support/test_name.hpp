@@ -9,14 +9,14 @@
 
 namespace pcor {
 
-/// Makes a test of an effect print its name, not its bytes.
+/// Lets GoogleTest print the name of an effect instead of its bytes.
 inline void PrintTo(const EffectInfo& info, std::ostream* stream) { *stream << info.id; }
 
 }  // namespace pcor
 
 namespace pcor::test {
 
-/// A text as the name of a test, which has letters and digits only: "static-lag" is StaticLag.
+/// Name of a test, which may contain only letters and digits: "static-lag" becomes StaticLag.
 inline std::string test_name(std::string_view text) {
   std::string name;
   bool begins_word = true;

@@ -17,16 +17,15 @@
 
 namespace pcor::test {
 
-/// Runs `work` as each member of a team of threads, to the end of all. A member that waits for the others
-/// longer than a minute fails: that is a program that would hang.
-/// @param one_at_a_time a member works only while the others wait, as threads must that read files by the
-/// netCDF library
-/// @return bytes that each member sent at each exchange
-/// @throws what a member threw, after all have ended
+/// Runs `work` in `size` threads that exchange messages. A thread that waits longer than a minute for the
+/// others fails, because the program would hang.
+/// @param one_at_a_time only one thread works at a time, as the netCDF library requires
+/// @return bytes that each thread sent in each exchange
+/// @throws an exception of `work`, after all threads have ended
 inline std::vector<std::vector<std::size_t>> run_with_communicator(
     std::size_t size, const std::function<void(Communicator&)>& work, bool one_at_a_time = false) {
   struct Table {
-    std::mutex working{};  // index of the working member, if one works at a time
+    std::mutex working{};  // held by the working thread if one_at_a_time
     std::mutex mutex{};
     std::condition_variable changed{};
     std::vector<std::string> laid{};
@@ -65,7 +64,7 @@ inline std::vector<std::vector<std::size_t>> run_with_communicator(
         table_.changed.notify_all();
       } else if (!table_.changed.wait_for(lock, std::chrono::minutes(1),
                                           [&] { return table_.round != round; })) {
-        throw std::logic_error("a member of the team waits for others that do not come");
+        throw std::logic_error("a thread waited more than 1 min for an exchange");
       }
       return table_.all;
     }

@@ -6,7 +6,7 @@
 
 namespace pcor::test {
 
-/// An uncertainty of every parameter of a model and of every role.
+/// Uncertainty of every parameter of a model and of every role.
 inline ModelUncertainty uncertain_in_everything(const Model& model) {
   std::size_t count = 0;
   for (const ModelEffect& effect : model.effects) count += effect.parameters.size();

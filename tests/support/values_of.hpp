@@ -8,7 +8,7 @@
 
 namespace pcor::test {
 
-/// All values of a variable at its rate, in its own unit without a `unit`.
+/// All values of a variable at its rate, in `unit` (default: the unit of the file).
 inline std::vector<double> values_of(const Flight& flight, const std::string& name,
                                      const std::string& unit = "") {
   std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));

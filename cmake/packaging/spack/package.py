@@ -1,5 +1,5 @@
-# A recipe for Spack: copy the folder to packages/pcor of a local package repository. The publisher sets the
-# address of the sources and the checksums of releases.
+# Spack recipe: copy this folder to packages/pcor of a local package repository. The publisher adds the address of the
+# sources and the checksums of releases.
 from spack.package import *
 
 
@@ -31,6 +31,8 @@ class Pcor(CMakePackage):
         depends_on("nlopt+cxx")
         depends_on("xsimd")
         depends_on("cli11")
+        depends_on("cereal")
+        depends_on("openssl")
 
     def cmake_args(self):
         return [
