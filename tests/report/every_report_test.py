@@ -3,9 +3,9 @@
 
     every_report_test.py TOOL SOURCE_DIRECTORY FOLDER BUILD_DIRECTORY      FOLDER: where reports.py made them
 
-Each picture has a text alternative and numbers. The pages of improve and check, or of all commands where
-PCOR_EVERY_REPORT is set, pass self_test.js, wide and narrow, and axe-core, which is fetched from npm into the build
-directory, finds no violation in them. Without Chromium the test is skipped (status 77), or
+Each picture has a text alternative and numbers. The pages of check, wide and light, and of improve, narrow and dark, or all
+pages in all of these ways where PCOR_EVERY_CASE is set, pass self_test.js, and axe-core, which is fetched from npm into the
+build directory, finds no violation in them. Without Chromium the test is skipped (status 77), or
 fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core its part of it is.
 """
 
@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 from browser import CHROMIUM, Browser, PageTest, skip_without  # noqa: E402
-from reports import COMMANDS, LOOKED_AT, SOURCE, page  # noqa: E402
+from reports import COMMANDS, SOURCE, looked_at, page  # noqa: E402
 
 BUILD = Path(sys.argv[4]).resolve()
 AXE_VERSION = "4.14.1"
@@ -40,14 +40,13 @@ class EveryReport(PageTest):
         cls.start(Browser, CHROMIUM, cls.make_folder(), 1400)
 
     def test_every_panel_has_data_wide_and_narrow(self):
-        for command in LOOKED_AT:
-            for width in (1400, 420):
-                with self.subTest(command=command, width=width):
-                    self.browser.resize(width)
-                    result = self.browser.self_test(page(command))
-                    self.assertEqual(result["wrong"], [])
-                    self.assertGreater(result["panels"], 1)
-                    self.assertEqual(self.browser.errors, [])
+        for command, width in looked_at((1400, 420)):
+            with self.subTest(command=command, width=width):
+                self.browser.resize(width)
+                result = self.browser.self_test(page(command))
+                self.assertEqual(result["wrong"], [])
+                self.assertGreater(result["panels"], 1)
+                self.assertEqual(self.browser.errors, [])
 
     def test_every_report_has_readable_text_and_complete_pictures(self):
         """No text is clipped or overlaps, each picture has its numbers, and the first screen is useful."""
@@ -114,15 +113,14 @@ class EveryReport(PageTest):
         if not axe:
             self.skipTest("axe-core cannot be had from npm")
         self.browser.resize(1400)
-        for command in LOOKED_AT:
-            for theme in ("light", "dark"):
-                with self.subTest(command=command, theme=theme):
-                    self.browser.open(f"{page(command)}#{theme}")
-                    self.browser.value("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
-                    self.browser.value(f"{axe}; 1")
-                    found = self.browser.value("""axe.run(document, {resultTypes: ['violations']}).then(({violations}) =>
-                      violations.map(({id, nodes}) => `${id}: ${nodes[0].html.slice(0, 200)}`))""")
-                    self.assertEqual(found, [])
+        for command, theme in looked_at(("light", "dark")):
+            with self.subTest(command=command, theme=theme):
+                self.browser.open(f"{page(command)}#{theme}")
+                self.browser.value("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
+                self.browser.value(f"{axe}; 1")
+                found = self.browser.value("""axe.run(document, {resultTypes: ['violations']}).then(({violations}) =>
+                  violations.map(({id, nodes}) => `${id}: ${nodes[0].html.slice(0, 200)}`))""")
+                self.assertEqual(found, [])
 
 
 if __name__ == "__main__":

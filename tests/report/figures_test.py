@@ -35,12 +35,33 @@ def coloured(path):
     return pixels.shape[1], (pixels[::4].max(axis=2) - pixels[::4].min(axis=2) > 40).sum()
 
 
+def make_folder(add_cleanup):
+    made = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
+    add_cleanup(made.cleanup)
+    folder = Path(made.name)
+    subprocess.run([SAMPLE_REPORT, folder / "report.html"], check=True)
+    return folder
+
+
+def program(path, text):
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return path
+
+
 class Figures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        """Pictures of one run, and a program that repeats what the browser wrote there."""
+        folder = make_folder(cls.addClassCleanup)
+        cls.pictures = folder / "pictures"
+        recorder = program(folder / "recorder", f"'{CHROMIUM}' \"$@\" | tee '{folder}/recorded'")
+        subprocess.run([PROGRAM, folder / "report.html", cls.pictures], check=True, timeout=120,
+                       env={**os.environ, "CHROMIUM": str(recorder)})
+        cls.repeat = program(folder / "repeat", f"cat '{folder}/recorded'")
+
     def setUp(self):
-        made = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
-        self.addCleanup(made.cleanup)
-        self.folder = Path(made.name)
-        subprocess.run([SAMPLE_REPORT, self.folder / "report.html"], check=True)
+        self.folder = make_folder(self.addCleanup)
 
     def command(self, folder, *size):
         return [PROGRAM, self.folder / "report.html", folder, *size]
@@ -50,8 +71,8 @@ class Figures(unittest.TestCase):
         return sorted(folder.glob("*.svg")), sorted(folder.glob("*.png"))
 
     def test_pictures_for_a_paper(self):
-        folder = self.folder / "pictures"
-        vectors, rasters = self.figures(folder)
+        folder = self.pictures
+        vectors, rasters = sorted(folder.glob("*.svg")), sorted(folder.glob("*.png"))
         self.assertEqual((len(vectors), len(rasters)), (PANELS, PANELS))
         self.assertEqual(len(list(folder.iterdir())), 2 * PANELS + 1)
         self.assertEqual(vectors[0].name, "01-residual-over-the-flight.svg")
@@ -74,11 +95,13 @@ class Figures(unittest.TestCase):
             self.assertGreaterEqual(width, 1600)
             self.assertGreater(colour, 200, raster.name)
 
-    def test_pictures_for_a_column_and_a_slide(self):
-        for size, width in (("column", 325), ("slide", 1280)):
-            vectors, _ = self.figures(self.folder / size, size)
-            for vector in vectors:
-                self.assertEqual(float(xml.etree.ElementTree.parse(vector).getroot().get("width")), width, vector.name)
+    def assert_width(self, vectors, width):
+        self.assertEqual(len(vectors), PANELS)
+        for vector in vectors:
+            self.assertEqual(float(xml.etree.ElementTree.parse(vector).getroot().get("width")), width, vector.name)
+
+    def test_pictures_for_a_slide(self):
+        self.assert_width(self.figures(self.folder / "slide", "slide")[0], 1280)
 
     def test_old_pictures_are_removed_and_other_files_remain(self):
         folder = self.folder / "again"
@@ -87,7 +110,7 @@ class Figures(unittest.TestCase):
         for name in ("07-of-another-run.svg", "07-of-another-run.png", "09-mine.png", "notes.txt"):
             (folder / name).write_text("")
         (self.folder / "08-outside.svg").write_text("")
-        self.figures(folder)
+        self.figures(folder, CHROMIUM=str(self.repeat))
         self.assertTrue((self.folder / "08-outside.svg").exists())
         self.assertFalse(list(folder.glob("07-of-another-run.*")))
         self.assertTrue((folder / "09-mine.png").exists() and (folder / "notes.txt").exists())
@@ -109,45 +132,41 @@ class Figures(unittest.TestCase):
 
     def test_a_failed_run_keeps_earlier_pictures(self):
         folder = self.folder / "kept"
-        self.figures(folder)
+        self.figures(folder, CHROMIUM=str(self.repeat))
+        for each in folder.glob("*.svg"):
+            each.write_text("earlier")
         before = {each.name: each.read_bytes() for each in folder.iterdir()}
         programs = self.folder / "programs"
         programs.mkdir()
         # A copy that fails half-way, as on a full disk.
-        (programs / "cp").write_text('#!/bin/sh\ncase $* in *.pcor-figures-*) exit 1 ;; esac\nexec /bin/cp "$@"\n')
-        (programs / "cp").chmod(0o755)
-        found = subprocess.run(self.command(folder, "slide"), env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"},
-                               capture_output=True, text=True)
+        program(programs / "cp", 'case $* in *.pcor-figures-*) exit 1 ;; esac\nexec /bin/cp "$@"')
+        found = subprocess.run(self.command(folder), capture_output=True, text=True, env={
+            **os.environ, "CHROMIUM": str(self.repeat), "PATH": f"{programs}:{os.environ['PATH']}"})
         self.assertEqual(found.returncode, 1)
         self.assertIn(str(folder), found.stderr)
         self.assertEqual({each.name: each.read_bytes() for each in folder.iterdir()}, before)
 
     def test_browser_is_started_by_the_name_of_its_link(self):
         # The Chromium of a snap is a link to a program that starts others by the name that it is called by.
-        dispatcher = self.folder / "dispatcher"
-        dispatcher.write_text(f"#!/bin/sh\n[ \"${{0##*/}}\" = my-browser ] && exec '{CHROMIUM}' \"$@\"\nexit 64\n")
-        dispatcher.chmod(0o755)
+        dispatcher = program(self.folder / "dispatcher", f"[ \"${{0##*/}}\" = my-browser ] && exec '{self.repeat}' \"$@\"\nexit 64")
         (self.folder / "my-browser").symlink_to(dispatcher)
         vectors, _ = self.figures(self.folder / "linked", CHROMIUM=str(self.folder / "my-browser"))
         self.assertEqual(len(vectors), PANELS)
 
-    def test_temporary_folder_may_have_any_name(self):
+    def test_pictures_for_a_column_with_a_temporary_folder_of_any_name(self):
         # Chromium makes a socket, whose path may have at most 107 characters, in the folder of temporary files.
         temporary = self.folder / ("it's my $HOME" + 120 * "x")
         beside = self.folder / "it's"
         temporary.mkdir()
         beside.mkdir()
-        vectors, _ = self.figures(self.folder / "quoted", TMPDIR=str(temporary))
-        self.assertEqual(len(vectors), PANELS)
+        self.assert_width(self.figures(self.folder / "quoted", "column", TMPDIR=str(temporary))[0], 325)
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertTrue(beside.exists())
 
     def test_a_stopped_run_writes_no_file(self):
         temporary = self.folder / "temporary"
         temporary.mkdir()
-        slow = self.folder / "slow"
-        slow.write_text("#!/bin/sh\nexec sleep 100\n")
-        slow.chmod(0o755)
+        slow = program(self.folder / "slow", "exec sleep 100")
         # The run is stopped as soon as its temporary folder appears, and a little later.
         for delay in (0, 0.005, 0.5):
             child = subprocess.Popen(self.command(self.folder / "stopped"),

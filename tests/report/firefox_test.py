@@ -13,7 +13,7 @@ import unittest
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 from browser import SELF_TEST, PageTest, skip_without  # noqa: E402
 from firefox import Firefox  # noqa: E402
-from reports import LOOKED_AT, page  # noqa: E402
+from reports import looked_at, page  # noqa: E402
 
 FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
 
@@ -24,7 +24,7 @@ class InFirefox(PageTest):
         cls.start(Firefox, FIREFOX, cls.make_folder(), 1400)
 
     def test_every_panel_has_data(self):
-        for command in LOOKED_AT:
+        for command, _ in looked_at([None]):
             with self.subTest(command=command):
                 self.browser.open(page(command))
                 self.assertEqual(self.browser.value(SELF_TEST)["wrong"], [])

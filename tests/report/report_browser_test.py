@@ -61,11 +61,8 @@ class ReportInBrowser(PageTest):
         self.assertEqual(result["points"][1], 7080)
         self.assertFalse(result["dark"])
 
-    def test_self_test_of_the_dark_page(self):
-        self.assertTrue(self.self_test(self.report, "dark")["dark"])
-
-    def test_self_test_of_the_narrow_page(self):
-        self.self_test(self.report, width=600)
+    def test_self_test_of_the_narrow_dark_page(self):
+        self.assertTrue(self.self_test(self.report, "dark", width=600)["dark"])
 
     def test_a_short_axis_has_two_numbers(self):
         self.browser.open(self.report.as_uri())
@@ -89,16 +86,15 @@ class ReportInBrowser(PageTest):
         self.self_test(report)
 
     def test_screenshots(self):
-        for wish, bright in (("light", True), ("dark", False)):
-            for width in (700, 1600):
-                with self.subTest(wish=wish, width=width):
-                    self.browser.resize(width, 2400)
-                    self.browser.open(f"{self.report.as_uri()}#{wish}")
-                    self.browser.settle()
-                    picture = pixels(io.BytesIO(self.browser.screenshot()))
-                    self.assertEqual(len(picture), 2400)
-                    self.assertEqual(picture[0, 0].mean() > 128, bright)
-                    self.assertGreater(coloured(picture), 3000)
+        for wish, bright, width in (("light", True, 700), ("dark", False, 1600)):
+            with self.subTest(wish=wish, width=width):
+                self.browser.resize(width, 2400)
+                self.browser.open(f"{self.report.as_uri()}#{wish}")
+                self.browser.settle()
+                picture = pixels(io.BytesIO(self.browser.screenshot()))
+                self.assertEqual(len(picture), 2400)
+                self.assertEqual(picture[0, 0].mean() > 128, bright)
+                self.assertGreater(coloured(picture), 3000)
 
     def test_print(self):
         self.browser.open(f"{self.report.as_uri()}#dark")
@@ -318,6 +314,31 @@ class ReportUnderTheHand(PageTest):
         for nonsense in (between_numbers, "view=" + urllib.parse.quote('{"range":[9e9,9.1e9]}'), "view=%7B", "view=%E0%A4%A", "view=7", "view=null", "view=%7B%22range%22%3A%5B9%2C1%5D%2C%22panels%22%3A4%7D"):
             self.browser.open(f"{self.report.as_uri()}#{nonsense}")
             self.assertEqual(self.selection["count"], self.count, nonsense)
+
+    def test_few_samples_of_a_regime_are_counted_and_do_not_set_the_axis(self):
+        panel = self.panels("byregime")[0]
+        texts = f"[...new DOMParser().parseFromString(pcorReport.panels[{panel}].svg(), 'image/svg+xml')" \
+            ".querySelectorAll('text')].map(({textContent}) => textContent)"
+        before = self.value(texts)
+        counts = self.value(f"""(() => {{
+          const {{samples, panels}} = pcorReport, columns = columnsOf(samples, panels[{panel}].item.columns);
+          return [...samples.regimes, ['All', samples.every]].map(([name, inside]) => [name, inside.filter((one, i) =>
+            one && columns.every(({{values}}) => Number.isFinite(values[i]))).length]);
+        }})()""")
+        for name, count in counts:
+            self.assertIn(f"{name} ({count})", before)
+        self.value(f"""(() => {{
+          const {{samples, panels}} = pcorReport, short = new Uint8Array(samples.count).fill(1, 0, 5);
+          for (const {{values}} of columnsOf(samples, panels[{panel}].item.columns)) values.fill(1000, 0, 5);
+          samples.regimes.forEach((inside) => inside.fill(0, 0, 5));
+          samples.every.fill(0, 0, 5);
+          samples.regimes.set('short', short);
+          pcorReport.draw();
+        }})()""")
+        after = self.value(texts)
+        self.assertIn("short (5)", after)
+        ends = [max(float(text.replace("−", "-")) for text in each if re.fullmatch(r"[−-]?[\d.]+", text)) for each in (before, after)]
+        self.assertLess(ends[1], 2.0 * ends[0])
 
     def test_each_regime_has_its_own_mark(self):
         marks = self.value("""['climb', 'descent', 'level', 'turn', 'take-off', 'ground', 'circle', 'cloud',

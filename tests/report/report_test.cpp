@@ -190,6 +190,15 @@ TEST(Report, UncertaintiesUseThePlusMinusSign) {
   EXPECT_THAT(html, HasSubstr("<code>pcor add --formula &#39;k +-1&#39;</code>"));
 }
 
+TEST(Report, EachLineOfTheNextStepHasItsCommand) {
+  Report report = report_of(3, 1);
+  report.next = "To refit one: pcor refit a.nc\nTo refit both: pcor refit b.nc";
+  const std::string html = report_html(report);
+  for (const char* const step : {"<p>To refit one: <code>pcor refit a.nc</code></p>",
+                                 "<p>To refit both: <code>pcor refit b.nc</code></p>"})
+    EXPECT_THAT(html, HasSubstr(step));
+}
+
 TEST(Report, RefusesAnUnknownColumn) {
   Report report = report_of(3, 1);
   report.items = {TimePanel{"Lines", "", {"c0", "absent"}}};

@@ -4,6 +4,7 @@
     reports.py TOOL SOURCE_DIRECTORY FOLDER       makes them in FOLDER
 """
 
+import itertools
 import os
 import shutil
 import subprocess
@@ -21,8 +22,6 @@ COMMANDS = {
     "process": ("three.nc", "-m", "fitted.toml", "-o", "corrected.nc"),
     "temperature": ("climbs.nc", "-m", "model.toml", "-o", "calibrated.toml", "--force"),
 }
-# Slow checks run on the reports with most kinds of pictures, and on all of them in the long tests.
-LOOKED_AT = COMMANDS if os.environ.get("PCOR_EVERY_REPORT") else ("improve", "check")
 TOOL, SOURCE, FOLDER = (Path(word).resolve() for word in sys.argv[1:4])
 
 
@@ -32,6 +31,11 @@ def run(*words, **more):
 
 def page(command):
     return (FOLDER / f"{command}.html").as_uri()
+
+
+def looked_at(ways):
+    """Commands and ways for slow checks: those with most kinds of pictures, each in one way; all in all ways in the long tests."""
+    return itertools.product(COMMANDS, ways) if os.environ.get("PCOR_EVERY_CASE") else zip(("check", "improve"), ways)
 
 
 def main():
