@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <new>
 
 namespace pcor {
 namespace {
@@ -25,9 +26,25 @@ std::vector<std::string> MpiCommunicator::exchange(const std::string& own) {
   const std::uint64_t length = own.size();
   std::vector<std::uint64_t> lengths(size_);
   MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
-  std::vector<std::string> all(size_);
   const std::size_t maximum = max_at_once / size_;
   const std::size_t longest = *std::max_element(lengths.begin(), lengths.end());
+  // All memory is taken before the messages: a process without memory must not leave the others waiting.
+  std::vector<std::string> all;
+  std::string bytes;
+  int is_exhausted = 0;
+  try {
+    all.resize(size_);
+    std::size_t sum = 0;
+    for (std::size_t member = 0; member < size_; ++member) {
+      all[member].reserve(lengths[member]);
+      sum += std::min<std::size_t>(lengths[member], maximum);
+    }
+    bytes.resize(sum);
+  } catch (const std::bad_alloc&) {
+    is_exhausted = 1;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &is_exhausted, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  if (is_exhausted != 0) throw std::bad_alloc();
   for (std::size_t first = 0; first < longest; first += maximum) {
     std::vector<int> counts;
     std::vector<int> offsets;
@@ -38,7 +55,6 @@ std::vector<std::string> MpiCommunicator::exchange(const std::string& own) {
       offsets.push_back(end);
       end += counts.back();
     }
-    std::string bytes(static_cast<std::size_t>(end), '\0');
     MPI_Allgatherv(own.data() + std::min(first, own.size()), counts[rank_], MPI_BYTE, bytes.data(),
                    counts.data(), offsets.data(), MPI_BYTE, MPI_COMM_WORLD);
     for (std::size_t member = 0; member < size_; ++member)

@@ -93,7 +93,7 @@ class Processes(unittest.TestCase):
         self.assert_alike(
             ["refit", *self.flights[:4], "--holdout", self.flights[4], "-m", MODEL, "-o", "fitted.toml",
              "--json", "fitted.json", "--table", "fitted.csv", "--report", "fitted.html"],
-            ["fitted.toml", "fitted.json", "fitted.csv", "fitted.html"], [1, 2, 3, 6])
+            ["fitted.toml", "fitted.json", "fitted.csv", "fitted.html"], [2, 6])
 
     def test_refit_without_cached_flights_is_identical(self):
         self.assert_alike(
@@ -105,12 +105,12 @@ class Processes(unittest.TestCase):
             ["refit", *self.flights[:3], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json",
              "--stage", "pitch manoeuvre, speed run: static-alpha", "--reference", "lams", "--reference", "height",
              "--training-share", "0.8", "--force"],
-            ["fitted.toml", "fitted.json"], [2, 4])
+            ["fitted.toml", "fitted.json"], [4])
 
     def test_refit_compare_and_diagnose_by_wind_and_height_are_identical(self):
         by_gps = ["-m", MODEL, "--reference", "wind", "--reference", "height"]
         self.assert_alike(["refit", *self.flights[:3], *by_gps, "-o", "fitted.toml", "--json", "fitted.json"],
-                          ["fitted.toml", "fitted.json"], [2, 3])
+                          ["fitted.toml", "fitted.json"], [3])
         self.assert_alike(["compare", *self.flights[:3], *by_gps, "--json", "compare.json"], ["compare.json"], [2])
         self.assert_alike(["diagnose", *self.flights[:3], *by_gps, "--json", "diagnose.json"], ["diagnose.json"], [2])
 
@@ -118,13 +118,13 @@ class Processes(unittest.TestCase):
         self.assert_alike(
             ["compare", *self.flights[:3], "-m", MODEL, "--report", "compare.html", "--json", "compare.json",
              "--table", "compare.csv"],
-            ["compare.html", "compare.json", "compare.csv"], [2, 4])
+            ["compare.html", "compare.json", "compare.csv"], [4])
 
     def test_check_is_identical(self):
         self.assert_alike(
             ["check", *self.flights[:3], "-m", MODEL, "--report", "check.html", "--json", "check.json",
              "--table", "check.csv"],
-            ["check.html", "check.json", "check.csv"], [2, 4])
+            ["check.html", "check.json", "check.csv"], [2])
 
     def test_temperature_is_identical(self):
         self.assert_alike(
@@ -135,9 +135,7 @@ class Processes(unittest.TestCase):
     def test_diagnose_is_identical(self):
         self.assert_alike(
             ["diagnose", *self.flights[:3], "-m", MODEL, "--report", "diagnose.html", "--json", "diagnose.json"],
-            ["diagnose.html", "diagnose.json"], [2])
-        self.assert_alike(
-            ["diagnose", *self.flights[:3], "-m", MODEL, "--json", "diagnose.json"], ["diagnose.json"], [4])
+            ["diagnose.html", "diagnose.json"], [4])
 
     def test_improve_is_identical(self):
         self.assert_alike(
@@ -167,7 +165,7 @@ class Processes(unittest.TestCase):
 
     def test_unreadable_flight_gives_one_error_message(self):
         for how in ["missing", "truncated", "wrong unit"]:
-            for bad in self.flights[:4]:
+            for bad in (self.flights[0], self.flights[2]):  # of the first process, and of another
                 with self.subTest(how=how, flight=bad):
                     shutil.copy(self.flights_folder / bad, self.path)
                     self.damage(bad, how)
@@ -227,7 +225,7 @@ class Processes(unittest.TestCase):
     def test_killed_process_ends_the_job(self):
         words = ["refit", *self.flights, "-m", MODEL, "-o", "fitted.toml", "--memory", "0"]
         killed = 0
-        for trial in range(6):
+        for trial in range(3):
             job = subprocess.Popen(command(3, *words), cwd=self.path, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, start_new_session=True)
             try:

@@ -486,19 +486,41 @@ TEST(LoopOrder, WriterOfAQuantityWithARateIsRefused) {
   EXPECT_THAT(error, HasSubstr("dynamic_pressure"));
 }
 
-// The rate of the airspeed uses all recorded quantities.
+// The rate of the airspeed depends on what the airspeed of the model depends on.
 TEST(LoopOrder, WriterOfAnInputOfTheAirspeedWithARateIsRefused) {
   Model model = c130();
   model.effects.push_back({"clock-skew", {2.0}});
+  const Sample sample = with(level, {{Quantity::roll, 2.0}});
   const auto error_of_writer = [&](Quantity quantity) {
-    Loop loop = build(model, level, 1.0);
+    Loop loop = build(model, sample, 1.0);
     loop.add(own({quantity}, {quantity}, [quantity](State<double>& state) { state[quantity] *= 1.5; }));
     std::string error;
     return loop.order(&error) ? std::string() : error;
   };
-  EXPECT_THAT(error_of_writer(Quantity::dynamic_pressure), HasSubstr("'dynamic_pressure'"));
-  EXPECT_THAT(error_of_writer(Quantity::vapor_pressure), HasSubstr("'vapor_pressure'"));
-  EXPECT_EQ(error_of_writer(Quantity::liquid_water), "") << "no input of this model";
+  for (const auto& [quantity, value] : level) {
+    if (quantity == Quantity::lams_airspeed) continue;
+    EXPECT_THAT(error_of_writer(quantity), HasSubstr(std::string(info_of(quantity).name)));
+  }
+  for (const Quantity quantity : {Quantity::lams_airspeed, Quantity::roll, Quantity::liquid_water})
+    EXPECT_EQ(error_of_writer(quantity), "") << "no input of the airspeed";
+}
+
+// The late clock is corrected by the airspeed of the model, which does not depend on that of the laser.
+TEST(LoopOrder, FunctorCorrectsALateLaser) {
+  Model model = c130();
+  model.effects.push_back({"clock-skew", {2.0}});
+  Loop before = build(model, level, 1.0), inside = build(model, level, 1.0);
+  inside.add(own({Quantity::lams_airspeed}, {Quantity::lams_airspeed},
+                 [](State<double>& state) { state[Quantity::lams_airspeed] *= 1.01; }));
+  std::string error;
+  ASSERT_TRUE(inside.order(&error)) << error;
+  for (int i = 0; i < 20; ++i) {
+    const Sample sample = with(level, {{Quantity::dynamic_pressure, 67.6 + 0.5 * i}});
+    run(inside, sample, i);
+    run(before, with(sample, {{Quantity::lams_airspeed, 1.01 * 117.0}}), i);
+  }
+  EXPECT_TRUE(std::isfinite(inside.state()[Quantity::lams_static_defect]));
+  expect_same(inside, before);
 }
 
 TEST(Loop, ImpossibleClockSkewIsRefused) {

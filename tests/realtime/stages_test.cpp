@@ -154,6 +154,38 @@ TEST(Stages, DerivedQuantitiesDependOnDeclaredSourcesOnly) {
   }
 }
 
+TEST(Stages, RateOfTheAirspeedDependsOnDeclaredSourcesOnly) {
+  Model model;
+  model.effects = {{"static-alpha", {0.02}},      {"static-beta-odd", {0.01}}, {"load-factor", {0.1}},
+                   {"psfd-thermal", {0.01, 0.0}}, {"humidity-error", {0.1}},   {"clock-skew", {0.1}}};
+  model.attack_radome = {4.9, 13.4, 6.1};
+  model.sideslip_radome = {0.1, 11.8, 0.0};
+  BindingError error;
+  const std::optional<Chain> chain =
+      Chain::build(model,
+                   roles_without({Quantity::mach, Quantity::attack, Quantity::sideslip,
+                                  Quantity::vapor_pressure, Quantity::ambient_temperature}),
+                   &error);
+  ASSERT_TRUE(chain) << error.message();
+  State<double> state;
+  for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
+  const auto airspeed = [&](const State<double>& of) {
+    return chain->airspeed_along_beam(of, chain->parameters().data());
+  };
+  const Quantities sources = MeasuredQuantities::sources(*chain, Quantity::airspeed_rate);
+  std::size_t moved = 0;
+  for (const Quantity input : chain->inputs()) {
+    State<double> after = state;
+    after[input] = 1.01 * state[input];
+    if (airspeed(after) == airspeed(state)) continue;
+    EXPECT_TRUE(is_in(sources, index(input))) << info_of(input).name;
+    ++moved;
+  }
+  // Both pressures, thermometer, dew point, three radome pressures, load, temperature of the transducer.
+  EXPECT_EQ(moved, 9U);
+  EXPECT_FALSE(is_in(sources, index(Quantity::lams_airspeed)));
+}
+
 TEST(Stages, DeclarationsHoldWithoutLaserAndTemperature) {
   Model model;
   model.effects = {{"static-qp", {0.03}}, {"static-mach2", {0.01}}};

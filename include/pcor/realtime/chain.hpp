@@ -306,7 +306,7 @@ class Chain : public BoundModel {
   static constexpr double min_static_pressure = 1.0;
 
  private:
-  static constexpr double min_radome_pressure = 1e-6;
+  static constexpr double min_radome_pressure = 1e-6;  // hPa
 
   explicit Chain(BoundModel bound) : BoundModel(std::move(bound)) {}
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/realtime/chain.hpp>
 #include <pcor/realtime/rate_filter.hpp>
+#include <pcor/realtime/stages.hpp>
 
 namespace pcor {
 
@@ -69,12 +69,11 @@ class LookAhead {
   /// Number of samples in the window of a rate.
   std::size_t window() const { return before_ + 1 + delay_; }
 
-  /// True if a rate of change depends on the quantity; the rate of the airspeed depends on every recorded
-  /// quantity.
+  /// True if a rate of change depends on the recorded quantity.
   bool reads(Quantity quantity) const {
     return std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
-      return change.of == quantity ||
-             (change.of == Quantity::corrected_airspeed && chain_->recorded(quantity));
+      const Quantities sources = MeasuredQuantities::sources(*chain_, change.rate);
+      return std::find(sources.begin(), sources.end(), quantity) != sources.end();
     });
   }
 
@@ -97,7 +96,7 @@ class LookAhead {
   /// all values missing, if there is no such sample yet. The bit `after_gap` marks a rate with too few
   /// neighbours, as after a gap or a missing input of the airspeed.
   bool exchange(State<double>& state, QualityFlags& flags) noexcept {
-    const std::size_t length = before_ + 1 + delay_;
+    const std::size_t length = window();
     for (Change& change : changes_) {
       // Each value is stored twice, so that the window is contiguous in time order.
       const double value = change.of == Quantity::corrected_airspeed
@@ -140,7 +139,7 @@ class LookAhead {
       delay_ = std::max(delay_, change.filter.after());
     }
     samples_.resize(delay_ + 1);
-    for (Change& change : changes_) change.values.assign(2 * (before_ + 1 + delay_), missing<double>());
+    for (Change& change : changes_) change.values.assign(2 * window(), missing<double>());
   }
 
   double airspeed_along_beam(State<double> state) const noexcept {

@@ -41,8 +41,8 @@ class StageFunctor final : public Functor {
   CorrectWith with_;
 };
 
-/// True if a loop with a laser filters its temperature: 12 s of samples for every new one, 300 of them at 25
-/// Hz.
+/// Whether a loop with a laser filters its temperature, which takes a sum over 12 s for every sample: 300
+/// samples at 25 Hz.
 enum class LaserFilter { with, without };
 
 /// The host of a sample loop at one rate: runs functors in the order of their dependencies, sample by sample.
@@ -103,8 +103,8 @@ class Loop {
 
   /// Orders the functors. Returns false without changes if one reads or writes a variable that was not added,
   /// if two functors write one quantity or depend on each other, or if one writes a quantity whose rate of
-  /// change the model reads (with `clock-skew` every recorded input), or the liquid water of `temp-wetting`,
-  /// because these are read before functors run; `error` names them.
+  /// change the model reads (with `clock-skew` every input of the airspeed), or the liquid water of
+  /// `temp-wetting`, because these are read before functors run; `error` names them.
   bool order(std::string* error);
 
   /// True if some functor writes the quantity.
@@ -252,8 +252,10 @@ inline bool Loop::order(std::string* error) {
       const bool changes_over_time =
           (look_ahead_ && look_ahead_->reads(output)) || (wetness_ && output == Quantity::liquid_water);
       if (changes_over_time && !is_of_stage) {
-        return fail("a functor writes '" + to_string(output) +
-                    "', whose changes over time the model needs; change it before the run");
+        return fail(
+            "a functor writes '" + to_string(output) +
+            "', which the model reads before functors run, for a rate of change or the wetness; change "
+            "it before the run");
       }
       writer[index(output)] = functor.get();
     }

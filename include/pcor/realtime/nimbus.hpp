@@ -174,7 +174,7 @@ class NimbusSystem {
   /// Callback of the leader: runs the sample and puts delta-p of the model, hPa. NaN if no model is
   /// installed.
   static void compute(Entry* entry) {
-    Rate& rate = current();
+    LoopAtRate& rate = current();
     if (!rate.loop) return Host::put(entry, missing<double>());
     State<double>& state = rate.loop->state();
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -209,7 +209,7 @@ class NimbusSystem {
 
   /// Clears all earlier samples of both rates, as at the start of a flight.
   static void reset() {
-    for (Rate* rate : {&low_, &high_}) {
+    for (LoopAtRate* rate : {&low_, &high_}) {
       if (rate->loop) rate->loop->reset();
       rate->samples = 0;
     }
@@ -224,7 +224,7 @@ class NimbusSystem {
     double zero;
   };
 
-  struct Rate {
+  struct LoopAtRate {
     std::optional<Loop> loop{};
     double samples_per_second = 0.0;
     std::size_t samples = 0;
@@ -245,9 +245,9 @@ class NimbusSystem {
     return index(quantity) < quantity_count && info_of(quantity).unit == "K" ? constants::ice_point : 0.0;
   }
 
-  static Rate& current() { return Host::high_rate() ? high_ : low_; }
+  static LoopAtRate& current() { return Host::high_rate() ? high_ : low_; }
 
-  static double time_of(Rate& rate) {
+  static double time_of(LoopAtRate& rate) {
     if constexpr (detail::HasTime<Host>::value) {
       return Host::time();
     } else {
@@ -268,8 +268,8 @@ class NimbusSystem {
   }
 
   static inline std::vector<Input> inputs_;
-  static inline Rate low_;
-  static inline Rate high_;
+  static inline LoopAtRate low_;
+  static inline LoopAtRate high_;
   static inline const Loop* latest_ = nullptr;
   static inline std::size_t run_ = 0;
   // One per quantity, and one for the quality bits.
@@ -332,7 +332,7 @@ inline std::vector<std::string> unread_defaults(const Model& model, const std::s
   return unread;
 }
 
-/// True if a defaults file may leave coefficients of a model to the model.
+/// Whether a defaults file may leave coefficients of a model to the model (`some`).
 enum class Overrides { some, all };
 
 /// False if one of the names `keys` of a defaults file that begin with `prefix` and a point does not match a

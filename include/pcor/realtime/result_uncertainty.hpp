@@ -98,14 +98,40 @@ class ResultUncertainty final : public Functor {
   }
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
-    find(state);
+    inputs_ = state;
+    for (const auto& [quantity, value] : recorded_) inputs_[quantity] = value;
+    const std::vector<double>& parameters = chain_.parameters();
+    // The policy raises delta-p to its minimum by this amount. It is kept, so that delta-p keeps the
+    // uncertainty of the law.
+    const double raised =
+        std::max(0.0, chain_.minimum_defect() - chain_.sum_at_ports(state, parameters.data()));
+    at_ports_ = raised;
+    results_ = results();
     // The product makes the uncertainty missing if the result is missing, and outside the domain of the law.
     const double zero = chain_.is_outside_domain(state) ? missing<double>() : 0.0;
-    for (std::size_t i = 0; i < uncertain_results.size(); ++i)
-      state[uncertain_results[i].uncertainty] = found_[i] + zero * state[uncertain_results[i].result];
-    if (flags.has(Quality::corrected_with_lams)) {
-      for (std::size_t i = 1; i < uncertain_results.size(); ++i)
-        state[uncertain_results[i].uncertainty] = missing<double>();
+    for (std::size_t i = 0; i < variances_.size(); ++i)
+      variances_[i] = zero * state[uncertain_results[i].result];
+    for (const std::vector<double>& change : root_) {
+      add([&](double sign) {
+        for (std::size_t i = 0; i < change.size(); ++i) parameters_[i] = parameters[i] + sign * change[i];
+      });
+    }
+    for (const Noise& noise : noises_) {
+      const double value = inputs_[noise.quantity];
+      add([&](double sign) { inputs_[noise.quantity] = value + sign * noise.size; });
+    }
+    for (const FlatOutside& each : surfaces_) {
+      const double error = each.slope * each.distance(state) * state[Quantity::dynamic_pressure];
+      if (error > 0.0) add([&](double sign) { at_ports_ = raised + sign * error; });
+    }
+    const double remaining =
+        std::hypot(static_defect_, static_defect_ratio_ * state[Quantity::static_pressure]);
+    if (remaining > 0.0) add([&](double sign) { after_law_ = sign * remaining; });
+    for (std::size_t i = 0; i < variances_.size(); ++i) {
+      // A temperature of the host is not a result.
+      const bool is_result =
+          i == 0 || (!flags.has(Quality::corrected_with_lams) && (i < 3 || chain_.has_temperature()));
+      state[uncertain_results[i].uncertainty] = is_result ? std::sqrt(variances_[i]) : missing<double>();
     }
   }
 
@@ -194,38 +220,6 @@ class ResultUncertainty final : public Functor {
     }
   }
 
-  void find(const State<double>& state) noexcept {
-    inputs_ = state;
-    for (const auto& [quantity, value] : recorded_) inputs_[quantity] = value;
-    const std::vector<double>& parameters = chain_.parameters();
-    // The policy raises delta-p to its minimum by this amount. It is kept, so that delta-p keeps the
-    // uncertainty of the law.
-    const double raised =
-        std::max(0.0, chain_.minimum_defect() - chain_.sum_at_ports(state, parameters.data()));
-    at_ports_ = raised;
-    results_ = results();
-    for (std::size_t i = 0; i < found_.size(); ++i) found_[i] = 0.0 * state[uncertain_results[i].result];
-    for (const std::vector<double>& change : root_) {
-      add([&](double sign) {
-        for (std::size_t i = 0; i < change.size(); ++i) parameters_[i] = parameters[i] + sign * change[i];
-      });
-    }
-    for (const Noise& noise : noises_) {
-      const double value = inputs_[noise.quantity];
-      add([&](double sign) { inputs_[noise.quantity] = value + sign * noise.size; });
-    }
-    for (const FlatOutside& each : surfaces_) {
-      const double error = each.slope * each.distance(state) * state[Quantity::dynamic_pressure];
-      if (error > 0.0) add([&](double sign) { at_ports_ = raised + sign * error; });
-    }
-    const double remaining =
-        std::hypot(static_defect_, static_defect_ratio_ * state[Quantity::static_pressure]);
-    if (remaining > 0.0) add([&](double sign) { after_law_ = sign * remaining; });
-    for (double& each : found_) each = std::sqrt(each);
-    // A temperature of the host is not a result.
-    if (!chain_.has_temperature()) found_[3] = found_[4] = missing<double>();
-  }
-
   // Adds the variance by one error. `move` sets it to a number of its standard uncertainties.
   template <class Move>
   void add(const Move& move) noexcept {
@@ -234,11 +228,11 @@ class ResultUncertainty final : public Functor {
     move(-1.0);
     const Results below = results();
     move(0.0);
-    for (std::size_t i = 0; i < found_.size(); ++i) {
+    for (std::size_t i = 0; i < variances_.size(); ++i) {
       const double difference = is_missing(above[i])   ? results_[i] - below[i]
                                 : is_missing(below[i]) ? above[i] - results_[i]
                                                        : 0.5 * (above[i] - below[i]);
-      found_[i] += difference * difference;
+      variances_[i] += difference * difference;
     }
   }
 
@@ -269,7 +263,7 @@ class ResultUncertainty final : public Functor {
   double at_ports_ = 0.0;   // added to the effects at the static ports, hPa
   double after_law_ = 0.0;  // added to delta-p, hPa
   Results results_{};       // results without changes
-  Results found_{};
+  Results variances_{};
 };
 
 }  // namespace pcor

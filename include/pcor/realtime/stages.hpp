@@ -56,6 +56,17 @@ inline Quantities read_of_air(const Chain& chain) {
   return read;
 }
 
+/// Recorded inputs of the airspeed of the model, and of the angle of the beam to the wind.
+inline Quantities read_of_airspeed(const Chain& chain) {
+  Quantities read;
+  for (const Quantity input : chain.inputs()) {
+    const bool is_humidity =
+        input == Quantity::vapor_pressure || input == Quantity::dew_point || input == Quantity::frost_point;
+    if (is_humidity || chain.needs(input)) read.push_back(input);
+  }
+  return read;
+}
+
 /// Inputs of the airspeed from LAMS: the speed along the beam and the angle of the beam to the wind.
 inline Quantities read_of_beam(const Chain& chain) {
   return joined({known(chain, {Quantity::lams_airspeed, Quantity::attack, Quantity::sideslip}),
@@ -122,9 +133,7 @@ struct MeasuredQuantities {
       case Quantity::mach:
         return {Quantity::static_pressure, Quantity::dynamic_pressure};
       case Quantity::airspeed_rate:
-        return joined({of(Quantity::mach),
-                       known(chain, {chain.derives_temperature() ? Quantity::recovery_temperature
-                                                                 : Quantity::ambient_temperature})});
+        return read_of_airspeed(chain);
       case Quantity::wetness:
         return {Quantity::liquid_water};
       case Quantity::vapor_pressure:
