@@ -93,6 +93,23 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
   return all;
 }
 
+/// @throws Error that names the laser of the first flight, if the model names none
+void require_laser(const ModelDefinition& model, const FlightSet& flights) {
+  if (model.variables.count(Quantity::lams_airspeed) != 0 || flights.empty() || flights.path(0).empty())
+    return;
+  const std::string laser = flights.share().of_each_flight<std::string>([&](std::size_t number) {
+    const Flight& flight = flights[number];
+    return first_with_values(flight, family_of(model, flight), info_of(Quantity::lams_airspeed).name);
+  })[0];
+  if (laser.empty()) return;
+  throw Error(
+      Error::Code::model,
+      fmt::format("{}: the reference lams (the default) needs the laser {}, which the model '{}' does not "
+                  "name; copy the model and add lams_airspeed = \"{}\" and the attack to its "
+                  "[variables], or give --reference static:OTHER.toml, pressure:PS, height or wind",
+                  flights.name(0), laser, model.model.name, laser));
+}
+
 }  // namespace
 
 std::vector<std::string> in_order(std::vector<std::string> texts) {
@@ -109,7 +126,10 @@ std::vector<std::string> in_order(std::vector<std::string> texts) {
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelDefinition& model,
                                  const FlightSet& flights) {
   ChosenReferences chosen;
-  const auto use = [&](const std::string& text) { chosen.used.push_back(read_reference(text, model)); };
+  const auto use = [&](const std::string& text) {
+    if (text == "lams") require_laser(model, flights);
+    chosen.used.push_back(read_reference(text, model));
+  };
   for (const std::string& text : texts) use(text);
   if (!texts.empty()) return chosen;
   use("lams");

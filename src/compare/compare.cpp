@@ -388,6 +388,18 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
   return result;
 }
 
+const ModelComparison& worst_by_noise(const Comparison& comparison, const ModelComparison& first) {
+  const ModelComparison* worst = &first;
+  for (const Comparison& further : comparison.further) {
+    for (const ModelComparison& model : further.models) {
+      const double largest = worst->is_by_gps() ? 0.0 : std::fmax(worst->all.rms_over_noise(), 0.0);
+      if (model.name == first.name && !model.is_by_gps() && model.all.rms_over_noise() > largest)
+        worst = &model;
+    }
+  }
+  return *worst;
+}
+
 void write_residuals(const Comparison& comparison, std::size_t number, const Flight& input,
                      const std::filesystem::path& output, const std::string& history) {
   const FlightResiduals& residuals = comparison.flights.at(number);

@@ -238,25 +238,28 @@ namespace pcor {
 
 Report comparison_report(const Comparison& comparison) {
   internal::ComparisonPanels panels(comparison);
-  const auto best = std::min_element(
+  const ModelComparison& best = *std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
+  const ModelComparison& worst = worst_by_noise(comparison, best);
   std::vector<std::string> names;
   for (const ModelComparison& model : comparison.models) names.push_back(model.name);
-  panels.report().title = best->is_by_gps()
-                              ? fmt::format("Residual by {}: {}", best->reference, fmt::join(names, "; "))
-                              : fmt::format("{}{}: rms residual {:.3f} hPa, {:.1f} times the noise",
-                                            comparison.models.size() > 1 ? "Smallest error: " : "",
-                                            best->name, best->all.rms, best->all.rms_over_noise());
+  panels.report().title =
+      worst.is_by_gps()
+          ? fmt::format("Residual by {}: {}", best.reference, fmt::join(names, "; "))
+          : fmt::format("{}{}: rms residual {:.3f} hPa{}, {:.1f} times the noise",
+                        comparison.models.size() > 1 ? "Smallest error: " : "", best.name, worst.all.rms,
+                        &worst == &best ? "" : " by " + worst.reference, worst.all.rms_over_noise());
   panels.report().subtitle = "Comparison with " + comparison.reference;
   panels.summarise();
   // The further references follow the first sentence.
   std::vector<std::string> others;
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
-      others.push_back(fmt::format("{}{}: {}bias {:+.3f} hPa, rms {:.3f} hPa.",
+      others.push_back(fmt::format("{}{}: {}bias {:+.3f} hPa, rms {:.3f} hPa{}.",
                                    comparison.models.size() > 1 ? model.name + ", " : "", further.reference,
-                                   model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms));
+                                   model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
+                                   internal::over_noise(model)));
   }
   std::vector<std::string>& summary = panels.report().summary;
   summary.insert(summary.begin() + 1, others.begin(), others.end());

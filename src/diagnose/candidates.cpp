@@ -8,6 +8,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
 #include "campaign/model_parameters.hpp"
+#include "campaign/reference_id.hpp"
 #include "flight/trouble_with_values.hpp"
 #include "model_io/parameter_unit.hpp"
 #include "parallel/flight_partition.hpp"
@@ -38,7 +39,8 @@ void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
   const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
     std::vector<bool> has;
     for (const auto& [role, variable] : usual)
-      has.push_back(has_values(flights[number], variable, std::string(info_of(role).unit)));
+      has.push_back(
+          has_values(flights[number], variable, std::string(info_of(role).unit), family.unit_of(variable)));
     return has;
   });
   std::size_t position = 0;

@@ -9,6 +9,7 @@
 
 #include <pcor/base/error.hpp>
 #include "campaign/gps_rows.hpp"
+#include "campaign/reference_id.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
 #include "diagnose/findings.hpp"
@@ -229,6 +230,29 @@ Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoe
   return precision;
 }
 
+/// Sets the largest contribution of each finding to the residual by a single reference. The fraction that the
+/// model does not absorb is that of all references together. @param findings in the order of the search
+void add_largest_sizes(const Analysis& analysis, const References& references,
+                       std::vector<Finding>& findings) {
+  const std::vector<std::size_t>& chosen = analysis.result().chosen;
+  const Eigen::VectorXd coefficients = analysis.coefficients(chosen);
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const Eigen::VectorXd own = coefficients(indices_of(analysis.groups()[chosen[i]], analysis.base()));
+    const double left = std::sqrt(analysis.search().remaining(chosen[i], own));
+    for (std::size_t r = 0; r < analysis.reference_count(); ++r) {
+      if (r > 0 && gps_kind(*references[r])) continue;
+      const double rms = left * rms_of(analysis.whole_share(), [&](std::size_t f) {
+                           return analysis.flight(f).reference == r
+                                      ? analysis.added_by(f, chosen[i], coefficients)
+                                      : std::vector<double>{};
+                         });
+      if (!(rms > findings[i].largest_rms)) continue;
+      findings[i].largest_rms = rms;
+      findings[i].largest_reference = r == 0 ? "" : references[r]->name();
+    }
+  }
+}
+
 /// @param dates on which a step is tried
 /// @param found receives the findings of the search, even if a variable of the files overrules them
 Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
@@ -266,7 +290,9 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
                           added_of(model, set.base, options.added), prior_of(references, set.base));
   diagnosis.threshold = analysis.result().threshold;
-  found = diagnosis.findings = findings_of(analysis, set.candidates);
+  diagnosis.findings = findings_of(analysis, set.candidates);
+  add_largest_sizes(analysis, references, diagnosis.findings);
+  found = diagnosis.findings;
   advise(analysis, set.candidates, diagnosis.findings);
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
@@ -302,10 +328,6 @@ std::string_view to_string(Verdict verdict) {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-std::string id_on_other_system(const std::string& system, const std::string& name) {
-  return "reference:" + (system.empty() ? "" : system + ":") + name;
-}
-
 std::string component_text(const EmpiricalPredictor& variable) {
   const bool is_total = variable.location == EffectLocation::pitot;
   std::string text = "the location of the error is unknown";
@@ -321,13 +343,17 @@ std::string component_text(const EmpiricalPredictor& variable) {
 
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
 
+std::string Finding::size_text(const char* unit) const {
+  return fmt::format("{:.3f}{}{}{}", largest_rms, unit, largest_reference.empty() ? "" : " by ",
+                     largest_reference);
+}
+
 namespace {
 
 bool may_be_of(bool reference, const Finding& finding) {
   return finding.of_reference == reference ||
          std::any_of(finding.aliases.begin(), finding.aliases.end(), [reference](const Alias& alias) {
-           return alias.probability >= min_probability &&
-                  (alias.effect.rfind("reference:", 0) == 0) == reference;
+           return alias.probability >= min_probability && is_on_other_system(alias.effect) == reference;
          });
 }
 

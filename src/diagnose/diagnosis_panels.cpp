@@ -10,6 +10,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
 
+#include "campaign/reference_id.hpp"
 #include "diagnose/finding_page.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
@@ -47,9 +48,6 @@ std::string column_of(Quantity quantity) {
   }
   return std::string(info_of(quantity).name);
 }
-
-/// Whether a coefficient belongs to a system that the model is compared with.
-bool is_of_reference(const std::string& coefficient) { return coefficient.rfind("reference:", 0) == 0; }
 
 ReportTable variables_table(const Unexplained& unexplained) {
   ReportTable table{
@@ -95,7 +93,7 @@ std::string refitted_text(const Diagnosis& diagnosis) {
   if (!diagnosis.is_refitted) return "the coefficients as given";
   const bool with_reference =
       std::any_of(diagnosis.own.begin(), diagnosis.own.end(),
-                  [](const CoefficientEstimate& each) { return is_of_reference(each.name); });
+                  [](const CoefficientEstimate& each) { return is_on_other_system(each.name); });
   return with_reference ? "the coefficients of the model and of the reference system fitted again"
                         : "the model's own coefficients fitted again";
 }
@@ -176,7 +174,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "search gives less weight to slow changes, so its chi2 differs. ";
   const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
   if (std::any_of(panel.coefficients.begin(), own_end,
-                  [](const WhatIfCoefficient& each) { return is_of_reference(each.name); }))
+                  [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); }))
     panel.caption += "The coefficients of the reference system keep their given values here. ";
   panel.caption +=
       "The numbers use all samples; pictures and tables of a flight of more than 16,000 samples interpolate "

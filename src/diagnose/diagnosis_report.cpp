@@ -113,7 +113,7 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
     const Finding& finding = diagnosis.findings[i];
     table.rows.push_back({std::to_string(i + 1), finding.id(), estimates_text(finding.estimates),
-                          cell(finding.rms, 3), cell(finding.chi2, 1), "",
+                          finding.size_text(""), cell(finding.chi2, 1), "",
                           ratio_cell(size_to_usual(finding.estimates)), finding.title});
     for (const Alias& alias : finding.aliases) {
       table.rows.push_back(

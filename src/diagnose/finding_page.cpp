@@ -45,7 +45,7 @@ std::string how_large(const Finding& finding, const Law& law) {
   if (const double ratio = size_to_usual(finding.estimates); ratio > 0.0) text += ", " + times_usual(ratio);
   text += ".";
   if (!law.size.empty()) text += fmt::format(" Sizes met in practice: {}.", law.size);
-  text += fmt::format(" The model does not absorb {} hPa rms of it", hpa(finding.rms));
+  text += fmt::format(" The model does not absorb {} of it", finding.size_text());
   if (!finding.worst_flight.empty() && std::isfinite(finding.worst)) {
     text += fmt::format("; the effect alone is at most {:+.3f} hPa, in {} at {} UTC", finding.worst,
                         finding.worst_flight, utc_text(finding.worst_time));
@@ -155,8 +155,8 @@ std::string name_with_id(const std::string& title, const std::string& id) {
 }
 
 std::string finding_summary(const Finding& finding) {
-  std::string text = fmt::format("Missing: {}, {} hPa rms that the model does not absorb.",
-                                 name_with_id(finding.title, finding.id()), hpa(finding.rms));
+  std::string text = fmt::format("Missing: {}, {} that the model does not absorb.",
+                                 name_with_id(finding.title, finding.id()), finding.size_text());
   if (finding.aliases.empty()) return text;
   std::vector<std::string> all;
   for (const Alias& alias : finding.aliases) {

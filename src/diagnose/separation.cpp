@@ -145,9 +145,10 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
                     const std::vector<std::string>& rivals) {
   const std::string names = join_list(rivals);
   if (plan.regime == nullptr) {
-    const bool is_of_either_system = std::any_of(
-        rivals.begin(), rivals.end(),
-        [&id](const std::string& rival) { return rival == "reference:" + id || "reference:" + rival == id; });
+    const auto effect_of = [](const std::string& name) { return name.substr(name.rfind(':') + 1); };
+    const bool is_of_either_system = std::any_of(rivals.begin(), rivals.end(), [&](const std::string& rival) {
+      return effect_of(rival) == effect_of(id);
+    });
     const std::string general =
         is_of_either_system ? "a further --reference (lams, wind or height) shows which system has the error"
                             : general_advice(id, effect);

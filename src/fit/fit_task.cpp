@@ -11,6 +11,7 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
+#include "campaign/reference_id.hpp"
 #include "fit/prior.hpp"
 #include "model_io/model_names.hpp"
 #include "model_io/parameter_unit.hpp"
@@ -67,7 +68,7 @@ std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Ref
   std::vector<FitParameter> parameters;
   add_parameters(parameters, model, "", true);
   if (reference.model() != nullptr)
-    add_parameters(parameters, *reference.model(), "reference:", options.fit_reference);
+    add_parameters(parameters, *reference.model(), id_on_other_system("", ""), options.fit_reference);
   for (const std::string& name : options.free) {
     for (const std::size_t p : indices_of(parameters, name, "--free")) parameters[p].fixed = false;
   }

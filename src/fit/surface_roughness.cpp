@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "campaign/reference_id.hpp"
 #include "fit/fit_flights.hpp"
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
@@ -88,7 +89,7 @@ std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinit
     }
   };
   add(model, "");
-  if (other != nullptr) add(other->model, "reference:");
+  if (other != nullptr) add(other->model, id_on_other_system("", ""));
   return surfaces;
 }
 

@@ -141,6 +141,13 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   return improvement;
 }
 
+const Finding* finding_of(const Improvement& improvement, std::size_t step) {
+  for (const Finding& finding : improvement.steps[step - 1].diagnosis.findings) {
+    if (finding.id() == improvement.steps[step].added) return &finding;
+  }
+  return nullptr;
+}
+
 WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const References& references,
                const ImproveOptions& options) {
   WhatIfOptions with;
@@ -158,10 +165,9 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
     }
     // A surface has no single coefficient to move.
     if (candidate.effect && candidate.effect->is_surface()) continue;
-    for (const Finding& finding : improvement.steps[index - 1].diagnosis.findings) {
-      if (finding.id() != step.added) continue;
-      candidate.is_alike = finding.is_alike;
-      for (const Alias& alias : finding.aliases)
+    if (const Finding* const finding = finding_of(improvement, index)) {
+      candidate.is_alike = finding->is_alike;
+      for (const Alias& alias : finding->aliases)
         rivals.push_back(
             {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
     }

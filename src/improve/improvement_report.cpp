@@ -140,11 +140,15 @@ ReportTable steps_table(const Improvement& improvement) {
                    "rms in the fit, hPa",
                    improvement.holdout_is_flights ? "rms held out, hPa" : "rms not in the fit, hPa",
                    "noise, hPa",
+                   "effect, hPa rms",
                    "not separable from",
                    "conclusion"};
-  for (const ImproveStep& step : improvement.steps) {
+  for (std::size_t i = 0; i < improvement.steps.size(); ++i) {
+    const ImproveStep& step = improvement.steps[i];
+    const Finding* const finding = i > 0 ? finding_of(improvement, i) : nullptr;
     table.rows.push_back({step_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
-                          cell(step.rms_holdout, 3), cell(step.noise_rms, 3), join_list(step.aliases),
+                          cell(step.rms_holdout, 3), cell(step.noise_rms, 3),
+                          finding == nullptr ? "" : finding->size_text(""), join_list(step.aliases),
                           sentence(step.learnt)});
   }
   return table;
@@ -195,14 +199,12 @@ void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size
     if (effect.id == step.added) inputs = inputs_of(effect);
   }
   inputs.push_back(numbered("added", index));
-  const auto finding = std::find_if(before.findings.begin(), before.findings.end(), [&](const Finding& one) {
-    return !one.of_reference && one.effect.id == step.added;
-  });
+  const Finding* const finding = finding_of(improvement, index);
   ReportText page{heading, unexplained_text(before.unexplained)};
   page.paragraphs.insert(page.paragraphs.begin(), "Added: " + name_with_id(step.title, step.added) + ".");
-  if (finding != before.findings.end()) {
+  if (finding != nullptr) {
     page = finding_page(*finding, before.threshold, heading);
-    panels.add_finding_columns(before.flights, static_cast<std::size_t>(finding - before.findings.begin()),
+    panels.add_finding_columns(before.flights, static_cast<std::size_t>(finding - before.findings.data()),
                                step.added, index);
   }
   const std::string prefix = step.added + ".";

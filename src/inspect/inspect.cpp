@@ -124,6 +124,7 @@ class Look {
     state_rounding();
     result_.laws = model_candidates(flight_, laws, result_.notes);
     find_reference();
+    note_undetermined_level();
     return std::move(result_);
   }
 
@@ -415,6 +416,21 @@ class Look {
       if (has_wind) references.emplace_back("wind");
       if (has_heights) references.emplace_back("height");
     }
+  }
+
+  /// Warns if neither a published model nor a reference of this flight gives the level of delta-p.
+  void note_undetermined_level() {
+    const bool has_law = std::any_of(result_.laws.begin(), result_.laws.end(),
+                                     [](const ModelCandidate& law) { return law.fits(); });
+    const bool is_by_gps =
+        std::all_of(result_.references.begin(), result_.references.end(),
+                    [](const std::string& each) { return each == "wind" || each == "height"; });
+    if (!result_.model || has_law || !is_by_gps || (result_.by_gps && result_.by_gps->determines_level()))
+      return;
+    result_.notes.push_back(warning_note(fmt::format(
+        "no laser, second static system{} determine the level of delta-p, so a refit keeps its starting "
+        "value",
+        result_.by_gps && result_.by_gps->by_wind ? ", circles or reverse headings" : " or wind by GPS")));
   }
 
   /// The part of a series that has values.

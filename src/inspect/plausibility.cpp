@@ -97,11 +97,13 @@ class Plausibility {
     if (!wrong) return;
     const std::string_view role = info_of(wrong->role).name;
     add(model_.variables.at(wrong->role),
-        fmt::format("{} pressure divided by the value expected from {}",
-                    wrong->role == Q::static_pressure ? "static" : "dynamic", wrong->against),
+        fmt::format("{} pressure divided by {}", wrong->role == Q::static_pressure ? "static" : "dynamic",
+                    wrong->against),
         wrong->ratio, "1",
-        fmt::format("refused; state its unit in the [units] of the model{}",
-                    wrong->unit.empty() ? "" : fmt::format(", {} = \"{}\"", role, wrong->unit)));
+        wrong->are_exchanged
+            ? "refused; static_pressure and dynamic_pressure may be exchanged in the [variables] of the model"
+            : fmt::format("refused; state its unit in the [units] of the model{}",
+                          wrong->unit.empty() ? "" : fmt::format(", {} = \"{}\"", role, wrong->unit)));
   }
 
   void temperature_against_height() {

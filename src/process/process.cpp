@@ -97,9 +97,9 @@ class Processing {
         (*line)->write(writer, static_cast<std::size_t>(summary_.rate));
       if (options_.progress) options_.progress(block.first + block.count, flight_.records());
     }
-    writer.finish();
-
     summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
+    note_uncorrected();
+    writer.finish();
     if (summary_.in_flight > 0) {
       summary_.mean_defect /= static_cast<double>(summary_.in_flight);
     } else {
@@ -107,7 +107,6 @@ class Processing {
     }
     for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
     note_domain();
-    if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
     return summary_;
   }
 
@@ -221,6 +220,26 @@ class Processing {
       summary_.outside.push_back({reason, time[segment.first], last + flight_.time().step});
     }
     return times_of(segments, time);
+  }
+
+  /// Warns of fewer than 1 % corrected samples, with the most frequent reason. @throws Error if there are
+  /// none: the output is not written
+  void note_uncorrected() {
+    constexpr std::size_t few = 100;
+    if (few * summary_.corrected >= summary_.samples) return;
+    constexpr std::ptrdiff_t preventing = 5;  // the first bits: no results, or no delta-p
+    const auto first = summary_.flagged.begin();
+    const auto most = std::max_element(first, first + preventing);
+    const QualityInfo& reason = quality_info[static_cast<std::size_t>(most - first)];
+    const std::string text =
+        fmt::format("{} of {} samples could be corrected; most frequent reason: {}, {} ({} samples)",
+                    summary_.corrected, summary_.samples, reason.name, reason.meaning, *most);
+    if (summary_.corrected > 0) {
+      summary_.notes.push_back(warning_note(text));
+    } else {
+      flight_.file().refuse(Error::Code::samples,
+                            ": {}; check the [variables] and [units] of the model with 'pcor inspect'", text);
+    }
   }
 
   /// Notes the samples in flight outside the domain of the law, known after the run.

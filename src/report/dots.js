@@ -53,9 +53,10 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = '', axis
   const top = keys.length ? legend(pen, keys, 8, width - 14, theme) : 8;
   const swatch = rows.some(({mark}) => mark) ? 22 : 0;
   const words = Math.max(0, ...rows.map(({text}) => textWidth(text ?? '', fontSize)));
-  const below = words > 0.3 * width;  // text that does not fit at the right is placed below the names
-  const longest = Math.max(...rows.map(({label, text}) =>
-    Math.max(textWidth(label, fontSize), below ? textWidth(text ?? '', smallSize) : 0))) + swatch;
+  const names = Math.max(...rows.map(({label}) => textWidth(label, fontSize))) + swatch;
+  // Text is below the names if it does not fit at the right, or the names do not fit beside it.
+  const below = words > 0.3 * width || (words > 0 && names + 22 > 0.36 * width);
+  const longest = Math.max(names, ...rows.map(({text}) => (below ? textWidth(text ?? '', smallSize) : 0) + swatch));
   const left = Math.min(longest + 22, (below ? 0.55 : 0.36) * width);
   const right = below ? 14 : words + 20;
   const box = plotBox(width, height, {left, right, top});
@@ -122,7 +123,9 @@ function drawDots(pen, width, height, item, samples, theme) {
   };
 }
 
-// Mean of columns for each regime, with the scatter about it as a bar.
+const fewSamples = 60;  // a regime with fewer does not set the axis: its mean is that of a short event
+
+// Mean of columns for each regime, with the number of its samples, and the scatter about the mean as a bar.
 function drawRegimes(pen, width, height, item, samples, theme) {
   const columns = columnsOf(samples, item.columns);
   const names = [...samples.regimes.keys()];
@@ -132,13 +135,14 @@ function drawRegimes(pen, width, height, item, samples, theme) {
   // selection.
   const reach = all.flatMap(([, inside]) => columns.flatMap((column) => {
     const found = statistics(column.values, samples.indices([column], inside));
+    if (found.count < fewSamples && inside !== samples.every) return [];
     return [found.mean - 2 * scatter(found), found.mean + 2 * scatter(found)];
   })).filter(Number.isFinite);
   const rows = all.map(([label, inside]) => {
     const found = columns.map((column) =>
       statistics(column.values, samples.indices([column], samples.selected.map((one, i) => one & inside[i]))));
     return {
-      label,
+      label: `${label} (${Math.max(...found.map(({count}) => count))})`,
       mark: names.includes(label) ? regimeMark(label, names, theme) : null,
       dots: found.map((one) => ({value: one.mean, error: scatter(one)})),
       text: `rms ${found.map(({rms}) => number(rms, 1e-3)).join(' → ')}`,

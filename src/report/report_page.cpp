@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -174,15 +175,18 @@ std::string head(const Report& report) {
                      element("p", report.subtitle, R"( class="subtitle")") + "</header>\n";
   if (!report.summary.empty())
     html += R"(<section class="summary" aria-label="Summary">)" + summary(report.summary) + "</section>\n";
-  // A command follows its purpose: "To apply it: pcor process ...".
+  // A command follows its purpose: "To apply it: pcor process ...". Each line is a step.
   if (!report.next.empty()) {
-    const std::string_view next = report.next;
-    const std::size_t colon = next.rfind(": ");
-    const std::size_t end = colon == std::string_view::npos ? next.size() : colon + 1;
-    html +=
-        fmt::format("<section class=\"next\" aria-label=\"Next step\"><p>{}{}</p></section>\n",
-                    escaped(next.substr(0, end)),
-                    end == next.size() ? "" : fmt::format(" <code>{}</code>", escaped(next.substr(end + 1))));
+    html += R"(<section class="next" aria-label="Next step">)";
+    std::istringstream lines(report.next);
+    for (std::string step; std::getline(lines, step);) {
+      const std::size_t colon = step.rfind(": ");
+      const std::size_t end = colon == std::string::npos ? step.size() : colon + 1;
+      html += fmt::format(
+          "<p>{}{}</p>", escaped(step.substr(0, end)),
+          end == step.size() ? "" : fmt::format(" <code>{}</code>", escaped(step.substr(end + 1))));
+    }
+    html += "</section>\n";
   }
   if (!report.info.empty())
     html += R"(<section aria-label="Facts">)" + folded("Model, flights and notes", info(report.info)) +

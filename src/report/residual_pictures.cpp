@@ -24,12 +24,13 @@ double step_of(const Report& report) {
 void add_regimes(Report& report, const std::vector<std::string>& residuals) {
   const std::vector<std::string> shown = present(report, residuals);
   if (shown.empty() || report.intervals.empty()) return;
-  report.items.emplace_back(
-      RegimePanel{"Residual by regime",
-                  "Dots are the mean in each regime, bars the scatter about it; the rms is at the right. A "
-                  "mean different from zero in one regime indicates a missing effect that depends on the "
-                  "manoeuvre.",
-                  shown, "residual"});
+  report.items.emplace_back(RegimePanel{
+      "Residual by regime",
+      "Dots are the mean in each regime, with its number of samples, bars the scatter about it; the rms is "
+      "at "
+      "the right. Arrows are means beyond the axis. A mean different from zero in one regime indicates a "
+      "missing effect that depends on the manoeuvre.",
+      shown, "residual"});
 }
 
 void add_distributions(Report& report, const std::vector<std::string>& residuals) {

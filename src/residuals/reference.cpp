@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
+#include "base/phrasing.hpp"
 #include "residuals/references/height.hpp"
 #include "residuals/references/lams.hpp"
 #include "residuals/references/pressure.hpp"
@@ -48,11 +52,15 @@ ModelDefinition read_system(const std::string& path) {
   return system;
 }
 
+/// Whether a text is two variables joined by +, and no file.
+bool is_pair(const std::string& text) {
+  return text.find('+') != std::string::npos && !std::filesystem::exists(text);
+}
+
 /// Model file, or two variables joined by +, which are not corrected.
 Pointer read_total_pressure(const std::string& system, const ModelDefinition& model) {
+  if (!is_pair(system)) return total_pressure_reference(read_system(system));
   const std::size_t plus = system.find('+');
-  if (plus == std::string::npos || std::filesystem::exists(system))
-    return total_pressure_reference(read_system(system));
   ModelDefinition pair;
   pair.model.name = system;
   pair.roles_from = model.roles_from;
@@ -74,6 +82,11 @@ constexpr std::array<Form, 6> forms{{
     {"lams", "", "the laser air-motion sensor", read_lams},
     {"static", "OTHER.toml", "a second static system, by its model",
      [](const std::string& file, const ModelDefinition&) {
+       if (is_pair(file))
+         throw Error(
+             Error::Code::usage,
+             fmt::format("static:{0} needs a model file; a pair of pressures is --reference total:{0}",
+                         file));
        return static_system_reference(read_system(file));
      }},
     {"pressure", "VARIABLE", "a recorded static pressure",
@@ -87,6 +100,33 @@ constexpr std::array<Form, 6> forms{{
     {"wind", "", "ground speeds in turns, reverse headings and speed runs",
      [](const std::string&, const ModelDefinition& model) { return wind_reference(model); }},
 }};
+
+std::string usage_of(const Form& form) {
+  return std::string(form.form) + (form.argument.empty() ? "" : fmt::format(":{}", form.argument));
+}
+
+/// The form that a text without the right one most likely means; otherwise all forms.
+std::string nearest_form(const std::string& text) {
+  if (text == "gps" || text == "GPS") return "height or wind";
+  if (text == "laser") return "lams";
+  const bool has_form = text.find(':') != std::string::npos;
+  if (!has_form && is_pair(text)) return "total:" + text;
+  if (!has_form && text.find(".toml") != std::string::npos) return "static:" + text;
+  std::vector<std::string> names;
+  std::vector<std::string> usages;
+  for (const Form& each : forms) {
+    names.emplace_back(each.form);
+    usages.push_back(usage_of(each));
+  }
+  const std::vector<std::string> meant = suggest(text.substr(0, text.find(':')), names);
+  for (const Form& each : forms) {
+    if (!meant.empty() && each.form == meant.front()) return usage_of(each);
+  }
+  if (!has_form &&
+      std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isupper(c) != 0; }))
+    return "pressure:" + text;
+  return join_list(usages, "or");
+}
 
 }  // namespace
 
@@ -120,9 +160,7 @@ std::string reference_forms() {
   std::string text;
   for (const Form& each : forms) {
     if (&each != &forms.front()) text += &each == &forms.back() ? " or " : ", ";
-    text += each.form;
-    if (!each.argument.empty()) text += fmt::format(":{}", each.argument);
-    text += fmt::format(" ({})", each.meaning);
+    text += fmt::format("{} ({})", usage_of(each), each.meaning);
   }
   return text;
 }
@@ -135,7 +173,7 @@ Pointer read_reference(const std::string& text, const ModelDefinition& model) {
     const bool fits = each.argument.empty() ? colon == std::string::npos : !argument.empty();
     if (each.form == form && fits) return each.read(argument, model);
   }
-  throw Error(Error::Code::usage, fmt::format("unknown reference '{}'; give {}", text, reference_forms()));
+  throw Error(Error::Code::usage, fmt::format("unknown reference '{}'; give {}", text, nearest_form(text)));
 }
 
 }  // namespace pcor

@@ -78,7 +78,8 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
   motion.ground_track = read(Quantity::ground_track);
   motion.liquid_water = read(Quantity::liquid_water);
   if (!by_usual_names.empty()) {
-    samples.notes.push_back(
+    samples.notes.emplace_back(
+        Severity::detail,
         fmt::format("regimes use variables with standard names that the model does not name: {}",
                     fmt::join(by_usual_names, ", ")));
   }

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
@@ -13,6 +15,7 @@
 #include "flight/registration.hpp"
 #include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
+#include "roles/role_evidence.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor::internal {
@@ -46,6 +49,24 @@ void note_other_unit(const Flight& flight, const ModelDefinition& file, const Va
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
 }
 
+/// Warns if the file calls the recovery temperature of a model the temperature of the air.
+void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& notes) {
+  const std::string name = file.variable_of(Quantity::recovery_temperature);
+  if (!flight.has(name)) return;
+  const VariableInfo& variable = flight.variable(name);
+  const std::vector<std::string> words = plain_words(variable.long_name);
+  const auto says = [&words](std::initializer_list<std::string_view> any) {
+    return std::find_first_of(words.begin(), words.end(), any.begin(), any.end()) != words.end();
+  };
+  const bool is_ambient =
+      says({"ambient", "static", "outside"}) || variable.attribute("standard_name") == "air_temperature";
+  if (!is_ambient || says({"recovery", "total", "indicated"})) return;
+  notes.push_back(warning_note(fmt::format(
+      "{} is recovery_temperature in the model, but '{}' in the file; name it ambient_temperature, "
+      "or another variable",
+      name, variable.long_name.empty() ? "air_temperature" : variable.long_name)));
+}
+
 /// Whether model and flight state different aircraft.
 bool are_of_two_aircraft(const ModelDefinition& file, const Flight& flight) {
   return !file.model.aircraft.empty() && !flight.aircraft().empty() && !is_of_aircraft(file, flight);
@@ -74,6 +95,7 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, Notes& notes) {
   require_possible_pressure(flight, file);
+  note_ambient(flight, file, notes);
   const VariableNaming& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
     const QuantityInfo& info = info_of(role);

@@ -18,10 +18,13 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t fewest = 20;  // minimum number of values
+constexpr double flown = 20.0;      // hPa, dynamic pressure in flight
 
-std::string stated_unit(const Flight& flight, const VariableNaming& family, const std::string& variable) {
-  const std::string stated = family.unit_of(variable);
-  return stated.empty() ? flight.variable(variable).units : stated;
+/// The unit in which a role is read.
+std::string stated_unit(const Flight& flight, const ModelDefinition& model, const VariableNaming& family,
+                        Quantity role) {
+  const std::string stated = unit_of_role(model, family, role);
+  return stated.empty() ? flight.variable(model.variables.at(role)).units : stated;
 }
 
 /// Some values in the unit of the role; empty if the variable cannot be read.
@@ -120,7 +123,6 @@ class PressureCheck {
   }
 
   std::optional<ImpossiblePressure> dynamic_pressure() const {
-    constexpr double flown = 20.0;  // hPa
     if (!is_in_doubt(Quantity::dynamic_pressure)) return std::nullopt;
     const std::vector<double> recorded = values_of(Quantity::dynamic_pressure);
     bool is_confirmed = false;
@@ -142,6 +144,33 @@ class PressureCheck {
     return is_confirmed ? std::nullopt : contradicted;
   }
 
+  /// Also of units that the model states; one that differs from that of the file is then the likely cause.
+  std::optional<ImpossiblePressure> static_below_dynamic() const {
+    constexpr double max_of_static = 1.5;
+    const std::vector<double> dynamic_pressure = values_of(Quantity::dynamic_pressure);
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(static_pressure_.size(), dynamic_pressure.size()); ++i) {
+      const double ratio = static_pressure_[i] / dynamic_pressure[i];
+      if (dynamic_pressure[i] > flown && ratio > 0.0) ratios.push_back(ratio);
+    }
+    if (ratios.size() < fewest) return std::nullopt;
+    const double ratio = median(std::move(ratios));
+    if (!(ratio * max_of_static < 1.0)) return std::nullopt;
+    const std::string& p = model_.variables.at(Quantity::static_pressure);
+    const std::string& q = model_.variables.at(Quantity::dynamic_pressure);
+    /// Factor of the values if they are read in the unit of the file.
+    const auto by_file = [&](Quantity role) {
+      const std::string& recorded = flight_.variable(model_.variables.at(role)).units;
+      const std::string stated = stated_unit(flight_, model_, family_, role);
+      return is_convertible(recorded, stated) ? UnitConversion::between(recorded, stated, {}).scale() : 1.0;
+    };
+    if (ratio * by_file(Quantity::static_pressure) * max_of_static >= 1.0)
+      return ImpossiblePressure{Quantity::static_pressure, ratio, q, flight_.variable(p).units};
+    if (ratio * max_of_static >= by_file(Quantity::dynamic_pressure))
+      return ImpossiblePressure{Quantity::dynamic_pressure, 1.0 / ratio, p, flight_.variable(q).units};
+    return ImpossiblePressure{Quantity::static_pressure, ratio, q, "", true};
+  }
+
  private:
   static constexpr double max_of_other = 0.05;
   static constexpr double max_of_dynamic = 0.1;  // includes the errors of two static pressures
@@ -160,8 +189,8 @@ class PressureCheck {
   }
 
   ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {
-    return {role, ratio, against,
-            unit_that_fits(stated_unit(flight_, family_, model_.variable_of(role)), ratio)};
+    return {role, ratio, "the value expected from " + against,
+            unit_that_fits(stated_unit(flight_, model_, family_, role), ratio)};
   }
 
   /// Calls with the pairs of other systems, and whether they are as measured: what was processed may come
@@ -185,21 +214,36 @@ class PressureCheck {
 
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
   const PressureCheck check(flight, model);
-  const std::optional<ImpossiblePressure> wrong = check.static_pressure();
-  return wrong ? wrong : check.dynamic_pressure();
+  std::optional<ImpossiblePressure> wrong = check.static_pressure();
+  if (!wrong) wrong = check.dynamic_pressure();
+  const std::optional<ImpossiblePressure> below = check.static_below_dynamic();
+  if (!wrong || !below) return wrong ? wrong : below;
+  // An exchanged dynamic pressure is the static pressure of the height; a real one is lower, 0.8 of it at
+  // Mach 1.
+  constexpr double least = 1.2;
+  const bool are_exchanged = wrong->role == Quantity::static_pressure && below->ratio < least * wrong->ratio;
+  return are_exchanged ? below : wrong;
 }
 
 void require_possible_pressure(const Flight& flight, const ModelDefinition& model) {
   const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight, model);
   if (!wrong) return;
   const std::string& variable = model.variables.at(wrong->role);
-  const std::string unit = flight.variable(variable).units;
+  const std::string unit = stated_unit(flight, model, family_of(model, flight), wrong->role);
+  const std::string is_wrong = fmt::format("{}: {} in {} is {:.3g} times {}", flight.path().string(),
+                                           variable, quote(unit), wrong->ratio, wrong->against);
+  if (wrong->are_exchanged) {
+    throw Error(
+        Error::Code::variable,
+        fmt::format("{}; if static_pressure and dynamic_pressure are exchanged in the [variables] of the "
+                    "model, set static_pressure = \"{}\", otherwise the right unit in its [units]",
+                    is_wrong, wrong->against));
+  }
   throw Error(
       Error::Code::unit,
-      fmt::format("{}: {} in {} is {:.3g} times the value expected from {}{}; set the right unit in the "
-                  "[units] of the model, {} = {}, or name another variable; a unit set there is not checked",
-                  flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
-                  wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
+      fmt::format("{}{}; set the right unit in the [units] of the model, {} = {}, or name another "
+                  "variable; heights and other systems do not check a unit set there",
+                  is_wrong, wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
                   info_of(wrong->role).name,
                   wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
 }

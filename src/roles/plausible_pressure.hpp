@@ -11,9 +11,10 @@ namespace pcor::internal {
 /// A static or dynamic pressure that cannot be right.
 struct ImpossiblePressure {
   Quantity role = Quantity::static_pressure;
-  double ratio = 1.0;   ///< median ratio of recorded to expected pressure
-  std::string against;  ///< "the height GGALT"
-  std::string unit;     ///< the unit in which it would be plausible; empty without such a unit
+  double ratio = 1.0;          ///< median ratio of recorded to expected pressure
+  std::string against;         ///< "the value expected from the height GGALT", or the other pressure, "QCF"
+  std::string unit;            ///< the unit in which it would be plausible; empty without such a unit
+  bool are_exchanged = false;  ///< the static pressure of the model seems to be its dynamic pressure
 };
 
 /// Holds the static pressure of a model against the height, within 10 % of the standard atmosphere, more
@@ -21,7 +22,7 @@ struct ImpossiblePressure {
 /// pressure against the total pressures of other systems, within 10 %. Empty if
 /// one of them agrees, unless the height shows that all are in a wrong unit; if the height shows that the
 /// other system is wrong; if the flight has neither; or if the model states the unit itself, which is
-/// accepted.
+/// accepted unless the dynamic pressure in flight exceeds 1.5 times the static pressure. Mach 1.2 gives 1.4.
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model);
 
 /// @throws Error that names the variable, its unit, the contradicting evidence and the correction of the

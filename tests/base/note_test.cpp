@@ -14,9 +14,11 @@ TEST(Note, TextHasTheSeverityInformation) {
 }
 
 TEST(Note, SortingPutsWarningsFirst) {
-  Notes notes{"a", warning_note("z"), warning_note("b")};
+  const Note detail{Severity::detail, "0"};
+  Notes notes{detail, "a", warning_note("z"), warning_note("b")};
   std::sort(notes.begin(), notes.end());
-  EXPECT_EQ(notes, (Notes{warning_note("b"), warning_note("z"), "a"}));
+  EXPECT_EQ(notes, (Notes{warning_note("b"), warning_note("z"), "a", detail}));
+  EXPECT_EQ(to_string(detail.severity), "detail");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/error_of.hpp"
 #include "support/short_flight.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -84,5 +85,11 @@ TEST(ChosenReferences, NoLaserAndNoNameIsAnError) {
   // The other references are sensitive to static-pressure changes, or insensitive.
   ModelDefinition model = laser_model();
   model.variables.erase(Quantity::lams_airspeed);
-  EXPECT_THROW(pcor::read_references({}, model, {short_flight()}), pcor::Error);
+  EXPECT_THROW(pcor::read_references({}, model, {}), pcor::Error);
+  // The message did not name the laser that the flight records.
+  using References = std::vector<std::string>;
+  for (const References& texts : {References{}, References{"lams"}}) {
+    EXPECT_THAT(pcor::test::error_of([&] { pcor::read_references(texts, model, {short_flight()}); }),
+                pcor::test::IsError(pcor::Error::Code::model, "short", "VLAMS", "[variables]", "static:"));
+  }
 }

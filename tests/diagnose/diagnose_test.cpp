@@ -459,6 +459,21 @@ TEST(Diagnose, EffectIsAssignedToOneOfTwoSystems) {
   for (const pcor::UpperLimit& limit : diagnosis.limits) EXPECT_GT(limit.rms, 0.0) << limit.effect;
 }
 
+// A drift of the static transducer cancels in the residual by the laser, but not in the total pressure.
+TEST(Diagnose, LargestSizeIsThatOfOneReference) {
+  const Paths drift{flight("c130-eq18", 364, "id = \"time-drift\"\non = \"PSFD\"\nstatic = 0.4\n")};
+  const Diagnosis both = pcor::diagnose(drift, model(), laser_and_total());
+  const Diagnosis total = pcor::diagnose(drift, model(), {laser_and_total()[1]});
+  ASSERT_THAT(both.findings, SizeIs(1));
+  ASSERT_THAT(total.findings, SizeIs(1));
+  EXPECT_EQ(both.findings[0].largest_reference, "total:PSFRD+QCFR");
+  EXPECT_EQ(total.findings[0].largest_reference, "");
+  EXPECT_DOUBLE_EQ(total.findings[0].largest_rms, total.findings[0].rms);
+  // The estimates of the drift differ by less than 1 %, and the samples by those that the laser lacks.
+  EXPECT_NEAR(both.findings[0].largest_rms / total.findings[0].rms, 1.0, 0.02);
+  EXPECT_GT(both.findings[0].largest_rms, 5.0 * both.findings[0].rms);
+}
+
 // The second pair is frozen for five minutes of a climb.
 TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
   const pcor::test::TemporaryDirectory directory;

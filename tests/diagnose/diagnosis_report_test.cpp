@@ -88,7 +88,7 @@ Finding sideslip_finding() {
   finding.effect.parameters = {-0.00171};
   finding.title = "static-port error with sideslip, ports not perfectly paired";
   finding.estimates = {{"b1", "1", -0.00171, 0.00012, -0.0018}};
-  finding.rms = 0.083;
+  finding.largest_rms = 0.083;
   finding.worst = -0.3654;
   finding.worst_flight = "rf02";
   finding.worst_time = start + 1912.0;
@@ -120,7 +120,7 @@ Finding lag_finding() {
   finding.effect.parameters = {0.31};
   finding.title = "pneumatic lag of the static line";
   finding.estimates = {{"tau", "s", 0.31, 0.044, 0.15}};
-  finding.rms = 0.11;
+  finding.largest_rms = 0.11;
   finding.chi2 = 88.0;
   return finding;
 }
@@ -455,8 +455,7 @@ TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
   Diagnosis diagnosis = partial();
   Finding& finding = diagnosis.findings.front();
   finding.estimates = {{"b1", "1", nan, nan, 0.0}, {"b2", "hPa", 1.0, nan, nan}};
-  finding.rms = finding.worst = finding.p_value = finding.rms_before = finding.rms_after = finding.events =
-      nan;
+  finding.worst = finding.p_value = finding.rms_before = finding.rms_after = finding.events = nan;
   finding.aliases.front().size_to_usual = infinity;
   diagnosis.noise_rms = diagnosis.residual_rms = diagnosis.residual_rms_held_out = nan;
   for (FlightDiagnosis& one : diagnosis.flights) {
@@ -493,8 +492,9 @@ TEST(ImprovementReport, ShowsTheSteps) {
   EXPECT_EQ(steps.rows[1].dots[1].value, 0.161);
   EXPECT_THAT(steps.lines, ElementsAre(testing::Pair("noise, 0.081 hPa", 0.081)));
   const auto& table = item<ReportTable>(report, "Steps of the selection");
-  EXPECT_THAT(table.rows[1], ElementsAre("+ static-beta-odd", "4", "0.196", "0.161", "0.081", "lams-azimuth",
-                                         "Sideslip counts, be it at the ports or at the laser."));
+  EXPECT_THAT(table.rows[1],
+              ElementsAre("+ static-beta-odd", "4", "0.196", "0.161", "0.081", "0.083", "lams-azimuth",
+                          "Sideslip counts, be it at the ports or at the laser."));
   split_words(report);
 }
 

@@ -63,6 +63,21 @@ TEST(Inspect, FindsVariablesAndRegimesOfASimulatedFlight) {
   EXPECT_EQ(inspection.model->variables.at(pcor::Quantity::static_pressure), "PSFD");
 }
 
+// The advice ended with a model of zeros and an output that it did not change.
+TEST(Inspect, WarnsIfNothingDeterminesTheLevel) {
+  const pcor::test::TemporaryDirectory folder;
+  const auto is_warned = [&](std::vector<std::pair<std::string, std::string>> variables) {
+    const Inspection inspection = pcor::inspect_flight(flight_with(folder, variables));
+    return std::count_if(inspection.notes.begin(), inspection.notes.end(), [](const pcor::Note& note) {
+      return note.severity == pcor::Severity::warning &&
+             note.text.find("level of delta-p") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(is_warned({{"PSFD", "hPa"}, {"QCF", "hPa"}}), 1);
+  EXPECT_EQ(is_warned({{"PSFD", "hPa"}, {"QCF", "hPa"}, {"PS_A", "hPa"}}), 0);
+  EXPECT_EQ(is_warned({{"PSFD", "hPa"}, {"QCF", "hPa"}, {"VLAMS", "m/s"}}), 0);
+}
+
 TEST(Inspect, MissingRoleStatesSearchedNamesAndConsequence) {
   const pcor::test::TemporaryDirectory folder;
   const Inspection inspection = pcor::inspect_flight(flight_with(folder, {{"PSFD", "hPa"}, {"QCF", "hPa"}}));

@@ -144,12 +144,12 @@ TEST(ModelFormat, ListsTheQuantitiesThatAFormulaCanName) {
   EXPECT_THAT(tables("quantity")[1], ElementsAreArray(others));
 }
 
-TEST(ModelFormat, ListsThePlaces) {
+TEST(ModelFormat, ListsTheLocations) {
   Lines rows;
   for (const EffectLocationInfo& info : effect_location_info)
     rows.push_back(fmt::format("| `{}` | {} | {} |", info.name, info.unit, info.adds_to));
-  ASSERT_EQ(tables("place").size(), 1u);
-  EXPECT_THAT(tables("place")[0], ElementsAreArray(rows));
+  ASSERT_EQ(tables("location").size(), 1u);
+  EXPECT_THAT(tables("location")[0], ElementsAreArray(rows));
 }
 
 TEST(ModelFormat, ListsThePublishedRecoveryFactors) {
@@ -182,7 +182,7 @@ TEST(ModelFormat, ListsTheResults) {
 
 TEST(ModelFormat, ListsTheKeysOfEveryTable) {
   const std::string unknown = "zzzzzzzz = 1\n";
-  EXPECT_THAT(names_of(rows_below("## The top of the file")),
+  EXPECT_THAT(names_of(rows_below("## Top-level keys")),
               UnorderedElementsAreArray(
                   names_listed_in(error_of("format = \"pcor-model/1\"\n" + unknown), "use one of ")));
   for (const std::string table : {"[lams]", "[temperature]", "[humidity]", "[radome]", "[policy]",

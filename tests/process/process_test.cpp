@@ -259,7 +259,7 @@ TEST_F(Process, ResultIsIndependentOfBlocks) {
 TEST_F(Process, ReportsProgress) {
   write_flight(input_, records_per_block + 1, 1);
   std::vector<std::size_t> done;
-  ProcessOptions options;
+  ProcessOptions options = steady();
   options.progress = [&done](std::size_t now, std::size_t) { done.push_back(now); };
   process_flight(input_, lams_model(), output_, options);
   EXPECT_THAT(done, testing::ElementsAre(records_per_block, records_per_block + 1));
@@ -533,12 +533,32 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
   EXPECT_EQ(outside(describes_flaps, 50.0), 0U);
 }
 
-// The search for extended flaps used pressures that have no plausible value.
-TEST_F(Process, DeadPressureSensorGivesNoResultInAnyRecord) {
-  for (const std::string dead : {"PSFD", "QCF"}) {
+// An output without a corrected sample was written with status 0. The search for extended flaps used
+// pressures that have no plausible value.
+TEST_F(Process, FlightWithoutACorrectedSampleIsRefusedWithTheReason) {
+  for (const auto& [dead, reason] :
+       {std::pair{"PSFD", "static_pressure_missing"}, {"QCF", "dynamic_pressure_missing"}}) {
     write_level(40, {}, dead);
-    EXPECT_EQ(process_flight(input_, law_model(), output_).corrected, 0U) << dead;
+    EXPECT_THAT(test::error_of([&] { process_flight(input_, law_model(), output_); }),
+                test::IsError(Error::Code::samples, "0 of 40 samples", reason, "40 samples"));
+    EXPECT_FALSE(std::filesystem::exists(output_));
   }
+}
+
+TEST_F(Process, FewCorrectedSamplesGiveAWarning) {
+  constexpr std::size_t records = 1000;
+  const auto warnings = [&](std::size_t flown) {
+    std::vector<double> q(records, -1.0);
+    std::fill_n(q.begin(), flown, 60.0);
+    write_series(test::sequence(50000.0, records),
+                 {{"PSFD", "hPa", std::vector<double>(records, 700.0)}, {"QCF", "hPa", q}});
+    const ProcessSummary summary = process_flight(input_, pressure_model(""), output_);
+    EXPECT_EQ(summary.corrected, flown);
+    return std::count_if(summary.notes.begin(), summary.notes.end(),
+                         [](const Note& note) { return note.severity == Severity::warning; });
+  };
+  EXPECT_EQ(warnings(9), 1);
+  EXPECT_EQ(warnings(11), 0);
 }
 
 // A lag is undone at even samples; at others a bit marks a doubtful value.

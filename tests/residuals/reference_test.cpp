@@ -42,7 +42,7 @@ TEST(Reference, UnknownTextIsRefusedWithTheValidForms) {
     EXPECT_THAT(reference_forms(), HasSubstr(form));
   for (const char* text :
        {"static:", "pressure:", "lams:", "lams:V", "wind:", "total", "PS_A", ":", "static", "LAMS"})
-    EXPECT_THAT(refusal(text, with_laser()), test::IsError(Error::Code::usage, reference_forms())) << text;
+    EXPECT_THAT(refusal(text, with_laser()), test::IsError(Error::Code::usage, text)) << text;
   EXPECT_THAT(refusal("static:absent.toml", with_laser()), test::IsError(Error::Code::file, "absent.toml"));
 }
 

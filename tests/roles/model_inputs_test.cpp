@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include <pcor/flight/flight.hpp>
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -33,6 +36,37 @@ TEST(ModelInputs, AircraftIsRecognisedByItsRegistration) {
   EXPECT_FALSE(is_of_same_aircraft("King Air JA8570", "King Air"));
   for (const char* const platform : {"C-130", "N130", "N", "N130A", "N677F", ""})
     EXPECT_FALSE(is_of_same_aircraft("C-130 N130AR", platform)) << platform;
+}
+
+// The recovery correction was applied to a temperature that had it, without a word.
+TEST(ModelInputs, AmbientTemperatureAsRecoveryTemperatureGivesAWarning) {
+  const auto warnings = [](const std::string& long_name, const std::string& standard_name) {
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path path = folder.path() / "flight.nc";
+    {
+      test::NetcdfMaker maker(path);
+      maker.time({100, 101});
+      maker.series("PSFD", "hPa", {850, 851});
+      maker.series("QCF", "hPa", {60, 61});
+      const int variable = maker.series("T", "K", {280, 281});
+      if (!long_name.empty()) maker.text(variable, "long_name", long_name);
+      if (!standard_name.empty()) maker.text(variable, "standard_name", standard_name);
+    }
+    ModelDefinition file;
+    file.variables = {{Quantity::static_pressure, "PSFD"},
+                      {Quantity::dynamic_pressure, "QCF"},
+                      {Quantity::recovery_temperature, "T"}};
+    Notes notes;
+    model_inputs(Flight(path), file, chain_of(file.model, file.roles()), file.roles(), notes);
+    return std::count_if(notes.begin(), notes.end(),
+                         [](const Note& note) { return note.severity == Severity::warning; });
+  };
+  EXPECT_EQ(warnings("Ambient Temperature, Reference", "air_temperature"), 1);
+  EXPECT_EQ(warnings("Static Air Temperature", ""), 1);
+  EXPECT_EQ(warnings("", "air_temperature"), 1);
+  EXPECT_EQ(warnings("Total Air Temperature, Reverse Flow", "air_temperature"), 0);
+  EXPECT_EQ(warnings("Recovery Air Temperature, Deiced Right, HARCO", ""), 0);
+  EXPECT_EQ(warnings("", ""), 0);
 }
 
 }  // namespace

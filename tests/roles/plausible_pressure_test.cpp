@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -118,6 +119,39 @@ TEST_F(PlausiblePressure, DynamicPressureIsCheckedByTotalPressures) {
   ModelDefinition stated = model_of_pair();
   stated.units[Quantity::dynamic_pressure] = "hPa";
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 45.0}, {698.0, 62.0}}), stated));
+}
+
+// PSFD and QCF exchanged gave an output without a corrected sample, and status 0.
+TEST_F(PlausiblePressure, StaticPressureBelowDynamicIsRefused) {
+  for (const double height : {3000.0, std::nan("")}) {
+    const Flight exchanged = flight_of({{70.0, 700.0}}, height);
+    const auto wrong = impossible_pressure(exchanged, model_of_pair());
+    ASSERT_TRUE(wrong);
+    EXPECT_TRUE(wrong->are_exchanged) << "no unit: kPa also gives a tenth of the value expected";
+    EXPECT_NEAR(wrong->ratio, 0.1, 1e-9);
+    EXPECT_THAT(
+        test::error_of([&] { require_possible_pressure(exchanged, model_of_pair()); }),
+        test::IsError(Error::Code::variable, "PSFD", "QCF", "[variables]", "static_pressure = \"QCF\""));
+  }
+  const auto wrong_unit = impossible_pressure(flight_of({{7.0, 60.0}}), model_of_pair());
+  ASSERT_TRUE(wrong_unit);
+  EXPECT_FALSE(wrong_unit->are_exchanged) << "60 hPa is no static pressure of 3000 m";
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 987.0}}), model_of_pair())) << "Mach 1.2";
+  EXPECT_FALSE(impossible_pressure(flight_of({{7.0, 15.0}}, 35000.0), model_of_pair())) << "not in flight";
+  EXPECT_FALSE(impossible_pressure(flight_of({{-9999.0, 60.0}}, std::nan("")), model_of_pair()))
+      << "a dead sensor";
+}
+
+TEST_F(PlausiblePressure, StatedUnitThatMakesAPressureImpossibleIsNamed) {
+  ModelDefinition stated = model_of_pair();
+  stated.units[Quantity::static_pressure] = "Pa";
+  const Flight right = flight_of({{700.0, 60.0}});
+  EXPECT_THAT(test::error_of([&] { require_possible_pressure(right, stated); }),
+              test::IsError(Error::Code::unit, "PSFD in 'Pa'", "QCF", "static_pressure = \"hPa\""));
+  stated = model_of_pair();
+  stated.units[Quantity::dynamic_pressure] = "psi";
+  EXPECT_THAT(test::error_of([&] { require_possible_pressure(right, stated); }),
+              test::IsError(Error::Code::unit, "QCF in 'psi'", "PSFD", "dynamic_pressure = \"hPa\""));
 }
 
 }  // namespace

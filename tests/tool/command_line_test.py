@@ -16,6 +16,8 @@ import termios
 import tomllib
 import unittest
 
+import netCDF4
+
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ONE, TWO, ComparisonTest  # noqa: E402
@@ -155,6 +157,14 @@ class Outputs(ComparisonTest):
                 details = self.run_tool(*command, "--verbose", cwd=self.path).stdout.splitlines()
                 self.assertGreaterEqual(len(details), len(lines))
 
+    def test_notes_on_details_are_printed_with_verbose(self):
+        details = [note["text"] for note in self.compare()["notes"] if note["severity"] == "detail"]
+        self.assertTrue(details)
+        short, full = self.run_tool("compare", ONE, "-m", self.model()).stdout, self.done("compare", ONE, "-m", self.model()).stdout
+        for text in details:
+            self.assertNotIn(text[:60], short)
+            self.assertIn(text, full)
+
     def test_files_of_a_refused_fit_are_announced(self):
         result = self.run_tool("temperature", ONE, "-m", self.model(), "-o", "o.toml", "--report", "r.html", cwd=self.path)
         self.assertEqual(result.returncode, 1)
@@ -182,6 +192,25 @@ class Hints(ComparisonTest):
         for arguments in ((), ("refitt",), ("refit", "--modle"), ("refit",)):
             result = subprocess.run(["my tools/pcor", *arguments], cwd=self.path, capture_output=True, text=True)
             self.assertRegex(result.stderr, r": 'my tools/pcor' .*--help\n$")
+
+    def test_another_name_has_the_right_one(self):
+        compare = ("compare", ONE, "-m", self.model())
+        for words, meant in ((("--figures",), "pcor-figures"), (("--processes", "2"), "pcor_mpi"), (("--html", "a.html"), "--report"),
+                             (("--plot",), "--report")):
+            self.assertIn(f"did you mean {meant}?", self.refused(*compare, *words, words=[words[0]], status=2))
+        self.assertIn("did you mean compare?", self.refused("evaluate", ONE, words=["evaluate"], status=2))
+        for reference, meant in (("static:PSFRD+QCFR", "total:PSFRD+QCFR"), ("PSFRD+QCFR", "total:PSFRD+QCFR"), ("gps", "height or wind"),
+                                 ("laser", "lams"), ("PSFRD", "pressure:PSFRD"), ("winds", "wind"), ("static", "static:OTHER.toml"),
+                                 ("other.toml", "static:other.toml")):
+            message = self.refused(*compare, "--reference", reference, words=[meant])
+            self.assertLessEqual(len(message), 160)
+
+    def test_a_scenario_has_a_name(self):
+        for number, scenario in enumerate(("c130-short", SOURCE / "data/scenarios/c130-short.toml")):
+            self.done("simulate", scenario, "-o", self.path / f"{number}.nc")
+        with netCDF4.Dataset(self.path / "0.nc") as named, netCDF4.Dataset(self.path / "1.nc") as given:
+            self.assertTrue((named["PSFD"][:] == given["PSFD"][:]).all())
+        self.refused("simulate", "c130-shortt", "-o", self.path / "2.nc", words=["c130-short"])
 
     def test_each_command_prints_its_version(self):
         version = self.run_tool("--version").stdout

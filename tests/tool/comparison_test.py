@@ -479,6 +479,27 @@ class References(ComparisonTest):
         self.assertLess(result["models"][0]["rms_hpa"], 0.05)
         self.assertIsNone(result["models"][0]["r2"])
 
+    def test_the_reference_with_the_largest_ratio_decides(self):
+        """A drift of the static transducer by 2 hPa/h hardly changes the residual by the laser, but the total pressure."""
+        drift = '\n[[effect]]\nid = "time-drift"\non = "PSFD"\nstatic = 2.0\n'
+        scenario, flight = self.write("drift.toml", SCENARIO + drift), self.path / "drift.nc"
+        self.done("simulate", scenario, "-o", flight, "--quiet")
+        report = self.path / "compare.html"
+        for name, worst, close, command in ((ONE, "lams", True, "process"), (flight, "total:PSFRD+QCFR", False, "diagnose")):
+            with self.subTest(worst):
+                result = self.compare("--report", report, flights=(name,))
+                self.assertEqual([(each["reference"], each["close_to_noise"]) for each in result["worst_references"]],
+                                 [(worst, close)])
+                ratios = {each["reference"]: each["rms_over_noise"] for each in result["models"]}
+                self.assertEqual(max(ratios[each] for each in ("lams", "total:PSFRD+QCFR")), ratios[worst])
+                self.assertEqual(result["worst_references"][0]["rms_over_noise"], ratios[worst])
+                text = self.done("compare", name, "-m", self.model()).stdout.splitlines()[-1]
+                self.assertIn(f"{ratios[worst]:.1f} times the noise by {worst}", text)
+                self.assertIn(f"pcor {command} ", text)
+                html = report.read_text()
+                self.assertIn(f"{ratios[worst]:.1f} times the noise</h1>", html)
+                self.assertIn(f"pcor {command} ", html)
+
     def test_static_system(self):
         """Both laws are true, so the residual is the noise of two transducers, each about 0.01 hPa."""
         result = self.compare("--reference", f"static:{OTHER_SYSTEM}")

@@ -292,7 +292,7 @@ class OpenFiles(ManyFlightsTest):
         """A program may have few files open; each flight also holds several MB of the HDF5 library then."""
         flight = self.path / "0.nc"
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
-        flights = [flight] + [Path(shutil.copy(flight, self.path / f"{number}.nc")) for number in range(1, 40)]
+        flights = [flight] + [Path(shutil.copy(flight, self.path / f"{number}.nc")) for number in range(1, 26)]
 
         def few_files():
             resource.setrlimit(resource.RLIMIT_NOFILE, (24, 24))

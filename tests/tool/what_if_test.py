@@ -24,6 +24,7 @@ from browser import CHROMIUM, Browser  # noqa: E402
 
 LAG = with_effect('id = "static-lag"\ntau = 1.0\n')(comparison_test.SCENARIO)
 SIDESLIP = with_effect('id = "static-beta-even"\non = "PSFD"\nb2 = 0.0002\n')(LAG)
+DIAGNOSED = {}
 FIRST, SECOND, BOTH, BOTH_TOO = (FLIGHTS / name for name in ("lag-one.nc", "lag-two.nc", "both.nc", "both-too.nc"))
 
 
@@ -59,11 +60,12 @@ class WhatIfTest(ComparisonTest):
         return self.browser.value(expression)
 
     def diagnosed(self, *flights):
-        """The page of a diagnosis with a model that was fitted to the flights."""
-        self.fitted = self.path / "fitted.toml"
-        self.refit(flights=flights, output=self.fitted)
-        self.report = self.path / "report.html"
-        self.diagnosis = self.json_of("diagnose", *flights, "-m", self.fitted, "--report", self.report)
+        """The page of a diagnosis with a model that was fitted to the flights; tests of the same flights share it."""
+        if flights not in DIAGNOSED:
+            fitted, report = (FLIGHTS / f"{len(DIAGNOSED)}-{name}" for name in ("fitted.toml", "report.html"))
+            self.refit(flights=flights, output=fitted)
+            DIAGNOSED[flights] = fitted, report, self.json_of("diagnose", *flights, "-m", fitted, "--report", report)
+        self.fitted, self.report, self.diagnosis = DIAGNOSED[flights]
         self.open()
 
     def open(self, wish=""):

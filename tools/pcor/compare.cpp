@@ -144,9 +144,12 @@ void print_short(const Comparison& comparison, const RowNames& rows) {
     print_parts(shown_parts(model, is_alone ? 5 : 3, is_alone ? 2 : 0), of_further);
   }
   for (const Comparison& further : comparison.further) {
-    for (const ModelComparison& model : further.models)
-      say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa\n", rows.of(model), further.reference,
-          model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms);
+    for (const ModelComparison& model : further.models) {
+      const double ratio = model.is_by_gps() ? std::nan("") : model.all.rms_over_noise();
+      say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa{}\n", rows.of(model), further.reference,
+          model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
+          std::isnan(ratio) ? "" : fmt::format(", ratio {:.1f}", ratio));
+    }
   }
   say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
 }
@@ -232,6 +235,17 @@ bool changes_total_pressure(const ModelEffect& effect) {
          location == EffectLocation::total_line || location == EffectLocation::pitot;
 }
 
+/// Whether an effect of the model changes the residual by a reference: static defects cancel in total
+/// pressures.
+bool can_refit(const ComparedModel& compared, const std::string& reference) {
+  const auto sees = [&reference](const auto& each) {
+    return each->name() == reference && each->sees_static_defect();
+  };
+  return std::any_of(compared.references.begin(), compared.references.end(), sees) ||
+         std::any_of(compared.model.model.effects.begin(), compared.model.model.effects.end(),
+                     changes_total_pressure);
+}
+
 /// Effects that no reference determines: static defects cancel in total pressures.
 std::vector<std::string> undetermined_effects(const ComparedModel& compared) {
   std::vector<std::string> ids;
@@ -265,9 +279,20 @@ struct ComparisonWithGps {
   Levels levels{};
 };
 
+/// Whether the rms is close to the noise; the largest ratio by all references decides.
+bool is_close_to_noise(const ModelComparison& worst) { return worst.all.rms_over_noise() < 1.15; }
+
 template <class Field>
 void describe(const ComparisonWithGps& self, Field& field) {
   describe(self.comparison, field);
+  field.list("worst_references", self.comparison.models, "reference with the largest ratio, for each model",
+             [&self](const ModelComparison& model, Field& of_one) {
+               const ModelComparison& worst = worst_by_noise(self.comparison, model);
+               of_one("name", model.name, "name of the model");
+               of_one("reference", worst.reference, "reference; wind and height only if there are no others");
+               of_one("rms_over_noise", worst.all.rms_over_noise(), "rms residual divided by the rms noise");
+               of_one("close_to_noise", is_close_to_noise(worst), "whether the ratio is less than 1.15");
+             });
   if (!field.has(!self.levels.empty())) return;
   field.list("by_gps", self.levels, "error of delta-p by GPS; absent if not requested",
              [](const auto& each, Field& level) {
@@ -286,25 +311,25 @@ constexpr double max_model_error = 0.3;
 enum class Support { supported, undecided, refuted };
 
 /// Whether the residuals are consistent with the model. By GPS the error of its delta-p and two standard
-/// errors are small; the rms of a residual not by GPS is close to the noise. Effects with zero coefficients
-/// correct nothing.
-Support support_of(const ModelComparison& result, const ModelDefinition& model, const Levels& levels) {
+/// errors are small; the rms of all residuals not by GPS is close to the noise. Effects with zero
+/// coefficients correct nothing. @param worst of all references
+Support support_of(const ModelComparison& worst, const ModelDefinition& model, const Levels& levels) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   const bool is_zero = std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
     return !effect.is_surface() && std::all_of(effect.parameters.begin(), effect.parameters.end(),
                                                [](double value) { return value == 0.0; });
   });
   if (is_zero && !effects.empty()) return Support::refuted;
-  const LevelByGps* const level = level_of(levels, result.name);
+  const LevelByGps* const level = level_of(levels, worst.name);
   if (level != nullptr) {
     const double margin = 2.0 * level->standard_error;
     const bool is_small = std::abs(level->missing) + margin <= max_model_error;
     const bool is_off = std::abs(level->missing) > margin && level->standard_error < max_level_error;
     if (is_off && !is_small) return Support::refuted;
-    if (result.is_by_gps()) return is_small ? Support::supported : Support::undecided;
+    if (worst.is_by_gps()) return is_small ? Support::supported : Support::undecided;
   }
-  if (result.is_by_gps()) return Support::undecided;
-  return result.all.rms_over_noise() < 1.15 ? Support::supported : Support::refuted;
+  if (worst.is_by_gps()) return Support::undecided;
+  return is_close_to_noise(worst) ? Support::supported : Support::refuted;
 }
 
 /// Next step: a model is applied or refitted, that with the smallest rms. An rms by GPS contains gusts: there
@@ -317,7 +342,7 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
                         [&model](const ComparedModel& each) { return each.name == model.name; });
   };
   const auto support = [&](const ModelComparison& model) {
-    return support_of(model, definition_of(model)->model, result.levels);
+    return support_of(worst_by_noise(comparison, model), definition_of(model)->model, result.levels);
   };
   const auto rank = [&](const ModelComparison& model) {
     const LevelByGps* const level = level_of(result.levels, model.name);
@@ -333,7 +358,11 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
   std::string which;
   if (comparison.models.size() > 1)
     which = by_gps ? "An rms by GPS does not rank models. " : best->name + " has the smallest rms. ";
-  const std::string flights = advised_command_line(options.comparison);
+  const ModelComparison& worst = worst_by_noise(comparison, *best);
+  const std::string ratio =
+      comparison.further.empty() || worst.is_by_gps() || std::isnan(worst.all.rms_over_noise())
+          ? ""
+          : fmt::format("{:.1f} times the noise by {}", worst.all.rms_over_noise(), worst.reference);
   const LevelByGps* const level = level_of(result.levels, best->name);
   const bool is_determined = level != nullptr && level->standard_error < max_level_error;
   const std::string correction =
@@ -342,7 +371,8 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
     return fmt::format("{}{}. To apply it: {}", which,
                        by_gps ? fmt::format("By GPS {} {}, which with two standard errors is within {} hPa",
                                             best->name, correction, max_model_error)
-                              : fmt::format("The residual of {} is close to the noise", best->name),
+                              : fmt::format("The residual of {} is close to the noise{}", best->name,
+                                            ratio.empty() ? "" : ", at most " + ratio),
                        process_command(options.comparison.flights, compared->model, model,
                                        options.comparison.timestamp_alignment));
   }
@@ -364,6 +394,13 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
   }
   if (!(best->all.rms > 0.0))
     return fmt::format("The residual of {} is zero and tests nothing; give another --reference", best->name);
+  if (!is_close_to_noise(worst) && !ratio.empty()) which += fmt::format("The rms is {}. ", ratio);
+  const std::string arguments =
+      fmt::format("{} -m {}", advised_command_line(options.comparison), model_argument(model));
+  if (is_close_to_noise(*best) && !is_close_to_noise(worst) && !can_refit(*compared, worst.reference)) {
+    return fmt::format("{}A refit does not change it. To find the error: {} diagnose {}", which, program(),
+                       arguments);
+  }
   const std::vector<std::string> undetermined = undetermined_effects(*compared);
   if (!undetermined.empty() && undetermined.size() == compared->model.model.effects.size()) {
     return fmt::format(
@@ -372,8 +409,8 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
         which, best->name);
   }
   const std::vector<std::filesystem::path> inputs = input_files(options.comparison, options.models);
-  std::string refit = fmt::format("{} refit {} -m {} -o {}", program(), flights, model_argument(model),
-                                  output_file("fitted.toml", inputs));
+  std::string refit =
+      fmt::format("{} refit {} -o {}", program(), arguments, output_file("fitted.toml", inputs));
   for (const std::string& id : undetermined) refit += " --fix " + shell_quote(id);
   if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
     return fmt::format(

@@ -48,6 +48,7 @@ void print_finding(const Finding& finding) {
   say("\n{}: {}\n", finding.id(), finding.title);
   if (finding.effect.is_formula()) say("  formula: {}\n", finding.effect.formula);
   say("  {}\n", kind_text(finding));
+  if (!finding.largest_reference.empty()) say("  {}\n", finding.size_text());
   if (!finding.worst_flight.empty()) {
     say("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
         utc_text(finding.worst_time));
@@ -73,7 +74,7 @@ void print_findings(const std::vector<Finding>& findings) {
       "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
   for (const Finding& finding : findings) {
     say("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n", finding.id(),
-        estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
+        estimates_text(finding.estimates), finding.largest_rms, finding.worst, finding.chi2,
         probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
   }
   say("before and after: rms, hPa, on held-out parts of the flights; events: separate times that support the "
@@ -86,7 +87,7 @@ void print_short(const Diagnosis& diagnosis) {
   constexpr std::size_t max_rows = 3;
   for (std::size_t i = 0; i < std::min(diagnosis.findings.size(), max_rows); ++i) {
     const Finding& finding = diagnosis.findings[i];
-    say("{}: {}, {:.3f} hPa rms, p {}\n", finding.id(), estimates_text(finding.estimates), finding.rms,
+    say("{}: {}, {}, p {}\n", finding.id(), estimates_text(finding.estimates), finding.size_text(),
         probability(finding.p_value));
     std::vector<std::string> rivals;
     for (const Alias& alias : finding.aliases) rivals.push_back(alias.effect);

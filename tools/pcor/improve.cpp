@@ -47,13 +47,17 @@ void print(const Improvement& improvement, const ChosenReferences& references,
     say("\n");
   }
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
-  say("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise", "coefficients");
+  say("{:<24} {:>10} {:>10} {:>10} {:>13}  {}\n", "rms, hPa", "training", "held out", "noise", "coefficients",
+      "effect");
   say("{:<24} {:>10} {:>10}\n", "input model", figure(improvement.given_rms_train),
       figure(improvement.given_rms_holdout));
   bool delivers_rivals = false;
-  for (const ImproveStep& step : improvement.steps) {
-    say("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}\n", step.added.empty() ? "refitted" : "+ " + step.added,
-        step.rms_train, step.rms_holdout, step.noise_rms, step.terms);
+  for (std::size_t i = 0; i < improvement.steps.size(); ++i) {
+    const ImproveStep& step = improvement.steps[i];
+    const Finding* const finding = i > 0 ? finding_of(improvement, i) : nullptr;
+    say("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}{}\n",
+        step.added.empty() ? "refitted" : "+ " + step.added, step.rms_train, step.rms_holdout, step.noise_rms,
+        step.terms, finding == nullptr ? "" : "  " + finding->size_text(""));
     delivers_rivals = delivers_rivals || step.delivered != step.added;
   }
   if (delivers_rivals) {

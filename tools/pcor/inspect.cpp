@@ -54,6 +54,33 @@ std::string reference_for(const Inspection& flight, const ModelCandidate& law) {
   return references.empty() ? "" : references.back();
 }
 
+/// The published model for the flight, unless the user writes one; nullptr without such a model.
+const ModelCandidate* law_of_next(const InspectArguments& options, const Inspection& flight) {
+  const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
+                                 [](const ModelCandidate& law) { return law.fits(); });
+  return options.model.empty() && fits != flight.laws.end() ? &*fits : nullptr;
+}
+
+/// What makes the published model read the laser of the flight; empty without a laser, or if it does already.
+std::string use_of_laser(const InspectArguments& options, const Inspection& flight) {
+  const ModelCandidate* const law = law_of_next(options, flight);
+  const bool has_laser =
+      std::find(flight.references.begin(), flight.references.end(), "lams") != flight.references.end();
+  if (law == nullptr || !has_laser || law->model.variables.count(Quantity::lams_airspeed) != 0) return "";
+  const Model& model = law->model.model;
+  std::vector<std::string> roles;
+  const auto add = [&](Quantity role, bool is_computed) {
+    if (!is_computed && law->model.variables.count(role) == 0 && flight.model->variables.count(role) != 0)
+      roles.push_back(fmt::format("{} = \"{}\"", info_of(role).name, flight.model->variables.at(role)));
+  };
+  add(Quantity::lams_airspeed, false);
+  add(Quantity::attack, model.attack_radome.is_calibrated());
+  add(Quantity::sideslip, model.sideslip_radome.is_calibrated());
+  return fmt::format(
+      "To compare it with the laser (--reference lams), add to the [variables] of a copy of {}: {}",
+      shell_path(law->path.string()), fmt::join(roles, ", "));
+}
+
 /// Up to three commands to paste, in order, that test a model and produce a corrected flight with a report.
 std::vector<std::string> next_commands(const InspectArguments& options, const Inspection& flight) {
   const std::string stamp =
@@ -65,9 +92,7 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
   std::string reference;
   for (const std::string& each : flight.references) reference += " --reference " + shell_quote(each);
   if (!flight.model) return {};
-  const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
-                                 [](const ModelCandidate& law) { return law.fits(); });
-  if (options.model.empty() && fits != flight.laws.end()) {
+  if (const ModelCandidate* const fits = law_of_next(options, flight)) {
     const std::string name = fits->path.stem().string();
     const std::string law = " -m " + shell_path(name);
     const std::string best = reference_for(flight, *fits);
@@ -88,15 +113,13 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
     const std::string roles = options.roles.empty() ? "" : " --roles " + shell_quote(options.roles);
     commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
   }
-  // A fit corrects a corrected pair further only if the flight determines the level.
-  const bool determines_level = flight.by_gps && flight.by_gps->level < 1.0;
+  // Without a reference for the level, a model keeps its coefficients of zero, and a corrected pair its
+  // error.
+  const bool determines_level = flight.by_gps && flight.by_gps->determines_level();
   if (reference.empty() || (flight.is_corrected && !determines_level)) {
-    commands.push_back(reference.empty()
-                           ? command("check", flight, model + stamp + " --report check.html")
-                           : command("compare", flight,
-                                     fmt::format("{}{} --reference {} --report compare.html", model, stamp,
-                                                 shell_quote(flight.references.back()))));
-    commands.push_back(process(*flight.model, file));
+    if (!reference.empty())
+      commands.push_back(command("compare", flight, model + stamp + reference + " --report compare.html"));
+    commands.push_back(command("check", flight, model + stamp + " --report check.html"));
   } else {
     const std::string fitted = output_file("fitted.toml", {file});
     commands.push_back(
@@ -214,7 +237,7 @@ void print_flown(const Inspection& flight) {
 }
 
 void print_by_gps(const GpsDesign& gps) {
-  constexpr double known = 1.0;  // hPa
+  constexpr double known = 1.0;  // hPa, as for the level
   const auto text = [](double error, const char* manoeuvre) {
     if (std::isnan(error)) return std::string("-");
     return error < known ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
@@ -246,6 +269,7 @@ void print_short(const Inspection& flight) {
     say("{} more problems: add --verbose\n", flight.problems.size() - max_rows);
   const std::string models = applicable_text(flight.laws);
   say("models for this flight: {}\n", models.empty() ? "no published one" : models);
+  if (models.empty() && flight.by_gps && !flight.by_gps->determines_level()) print_by_gps(*flight.by_gps);
 }
 
 std::string validity_of(const LawInfo& law) {
@@ -302,13 +326,14 @@ std::string doubts_of_next(const Inspection& flight) {
              : fmt::format(" ({}check that it applies to {})", text, utc_text(flight.time.first, "%Y-%m-%d"));
 }
 
-void print_next(const Inspection& flight) {
+void print_next(const InspectArguments& options, const Inspection& flight) {
   if (flight.next.empty()) {
     say("This file allows no correction: {}.\n", flight.why_no_model);
     return;
   }
   say("Next{}{}:\n", flight.next.size() == 1 ? "" : ", in this order", doubts_of_next(flight));
   for (const std::string& each : flight.next) say("  {}\n", each);
+  if (const std::string laser = use_of_laser(options, flight); !laser.empty()) say("{}\n", laser);
 }
 
 bool is_readable(const Inspection& flight) { return flight.unreadable.empty(); }
@@ -402,7 +427,7 @@ void run(const InspectArguments& options) {
   together.appear();
   if (!text) return;
   say_written({options.model, options.common.report, options.common.json});
-  print_next(first);
+  print_next(options, first);
 }
 
 }  // namespace

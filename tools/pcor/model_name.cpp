@@ -71,15 +71,15 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-}  // namespace
-
-std::string model_file(const std::string& given) {
+/// @param kind "model" or "scenario" @param folders in which a file may have this name
+std::string named_file(const std::string& given, const char* kind, const std::vector<fs::path>& folders,
+                       const char* advice) {
   std::error_code code;
   if (given.empty() || fs::exists(given, code) || given.find('/') != std::string::npos ||
       ends_with(given, model_ending))
     return given;
   std::set<std::string> known;  // a name may occur in several folders
-  for (const fs::path& folder : model_folders()) {
+  for (const fs::path& folder : folders) {
     const fs::path file = folder / (given + std::string(model_ending));
     if (fs::is_regular_file(file, code)) {
       std::string path = fs::weakly_canonical(file, code).string();
@@ -89,9 +89,20 @@ std::string model_file(const std::string& given) {
     for (const fs::path& other : files_in(folder)) known.insert(other.stem().string());
   }
   const std::string meant = did_you_mean(given, {known.begin(), known.end()});
-  throw Error(Error::Code::file,
-              fmt::format("there is no model file or model named '{}'; {}", given,
-                          meant.empty() ? "name a file, or a model in a folder of PCOR_MODELS" : meant));
+  throw Error(Error::Code::file, fmt::format("there is no {0} file or {0} named '{1}'; {2}", kind, given,
+                                             meant.empty() ? advice : meant));
+}
+
+}  // namespace
+
+std::string model_file(const std::string& given) {
+  return named_file(given, "model", model_folders(), "name a file, or a model in a folder of PCOR_MODELS");
+}
+
+std::string scenario_file(const std::string& given) {
+  std::vector<fs::path> folders = model_folders();
+  for (fs::path& folder : folders) folder.replace_filename("scenarios");
+  return named_file(given, "scenario", folders, "give the path of a scenario");
 }
 
 std::vector<fs::path> named_models() {
@@ -136,8 +147,10 @@ std::string reference_argument(const std::string& reference) {
 
 void take_models_by_name(CLI::App& program) {
   using Find = std::string (*)(const std::string&);
-  const std::pair<const char*, Find> options[] = {
-      {"--model", model_file}, {"--second", model_file}, {"--reference", reference_with_model_file}};
+  const std::pair<const char*, Find> options[] = {{"--model", model_file},
+                                                  {"--second", model_file},
+                                                  {"--reference", reference_with_model_file},
+                                                  {"scenario", scenario_file}};
   for (CLI::App* const command : program.get_subcommands({})) {
     for (const auto& [name, find] : options) {
       const auto is_named = [name = name](const CLI::Option* option) { return option->check_name(name); };

@@ -13,6 +13,9 @@ namespace pcor::tool {
 /// @throws Error with suggestions, if there is no such model.
 std::string model_file(const std::string& given);
 
+/// File of a scenario that a user names, in the same way, in the folder "scenarios" beside one of models.
+std::string scenario_file(const std::string& given);
+
 /// Files of all named models, models of the user first, each name once.
 std::vector<std::filesystem::path> named_models();
 
@@ -28,7 +31,8 @@ std::string reference_with_model_file(const std::string& given);
 std::string model_argument(const std::string& file);
 std::string reference_argument(const std::string& reference);
 
-/// Enables names of models in the options --model, --second and --reference of all sub-commands.
+/// Enables names of models in the options --model, --second and --reference of all sub-commands, and names of
+/// scenarios.
 void take_models_by_name(CLI::App& program);
 
 }  // namespace pcor::tool

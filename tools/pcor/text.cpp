@@ -176,13 +176,14 @@ void finish_text() {
 
 void say_notes(Notes notes, std::size_t max_notes) {
   constexpr std::size_t max_width = 136;
-  std::stable_partition(notes.begin(), notes.end(),
-                        [](const Note& note) { return note.severity == Severity::warning; });
+  std::stable_sort(notes.begin(), notes.end(),
+                   [](const Note& a, const Note& b) { return a.severity < b.severity; });
   if (is_verbose()) {
     for (const Note& note : notes) say("\n{}: {}.\n", label_of(note), note.text);
     say("\n");
     return;
   }
+  while (!notes.empty() && notes.back().severity == Severity::detail) notes.pop_back();
   bool is_cut = false;  // a note before
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
     // A note begins with the fault or the action: complete clauses stay if the first one fits.

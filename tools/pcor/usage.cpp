@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include <pcor/base/suggest.hpp>
 #include "command_tree.hpp"
@@ -13,6 +16,22 @@ namespace {
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Names that users try, and what does their work.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> other_names{{
+    {"--figures", "pcor-figures"},
+    {"--processes", "pcor_mpi"},
+    {"--html", "--report"},
+    {"--plot", "--report"},
+    {"evaluate", "compare"},
+}};
+
+std::string hint_of(const std::string& wrong, const std::vector<std::string>& known) {
+  for (const auto& [other, meant] : other_names) {
+    if (wrong == other) return fmt::format("did you mean {}?", meant);
+  }
+  return did_you_mean(wrong, known);
 }
 
 std::string with_hint(const std::string& message, const std::string& hint, const std::string& help) {
@@ -61,8 +80,8 @@ std::string usage_message(const CLI::App& program, const std::string& message,
   if (command == nullptr && words.front()[0] != '-') {
     std::vector<std::string> names;
     for (const CLI::App* each : shown_commands(program)) names.push_back(each->get_name());
-    return with_hint(fmt::format("unknown sub-command '{}'", words.front()),
-                     did_you_mean(words.front(), names), help_of_all);
+    return with_hint(fmt::format("unknown sub-command '{}'", words.front()), hint_of(words.front(), names),
+                     help_of_all);
   }
   const std::string help =
       command == nullptr ? help_of_all : fmt::format("{} {} --help", tool::program(), words.front());
@@ -70,8 +89,8 @@ std::string usage_message(const CLI::App& program, const std::string& message,
   const std::vector<std::string> unknown =
       unknown_options(command == nullptr ? program : *command, words, known);
   if (!unknown.empty()) {
-    return with_hint(fmt::format("unknown option '{}'", unknown.front()),
-                     did_you_mean(unknown.front(), known), help);
+    return with_hint(fmt::format("unknown option '{}'", unknown.front()), hint_of(unknown.front(), known),
+                     help);
   }
   return fmt::format("pcor: {}; to list the options: {}", message, help);
 }

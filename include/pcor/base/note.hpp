@@ -10,13 +10,14 @@ namespace pcor {
 
 /// Severity of a note, most severe first.
 enum class Severity {
-  warning,     ///< the data or the set-up may invalidate the result
-  information  ///< a choice or a limitation to know
+  warning,      ///< the data or the set-up may invalidate the result
+  information,  ///< a choice or a limitation to know
+  detail        ///< a usual choice: commands print it with --verbose only
 };
 
-/// Text: "warning", "information".
+/// Text: "warning", "information", "detail".
 inline std::string_view to_string(Severity severity) {
-  return severity == Severity::warning ? "warning" : "information";
+  return severity == Severity::warning ? "warning" : severity == Severity::detail ? "detail" : "information";
 }
 
 /// Note about a result for the user. A text converts to a note with the severity information.
@@ -37,7 +38,8 @@ struct Note {
   // A friend, so that a text, which converts to a note, is not described as one.
   template <class Field>
   friend void describe(const Note& self, Field& field) {
-    field("severity", self.severity, "warning: the data may invalidate the result; information otherwise");
+    field("severity", self.severity,
+          "warning: the data may invalidate the result; information; detail: a usual choice");
     field("text", self.text, "the note, a sentence without full stop");
   }
 };
@@ -45,7 +47,7 @@ struct Note {
 using Notes = std::vector<Note>;
 
 inline bool operator==(const Note& a, const Note& b) { return a.severity == b.severity && a.text == b.text; }
-/// Warnings precede information; otherwise alphabetical.
+/// By severity, then alphabetical.
 inline bool operator<(const Note& a, const Note& b) {
   return std::tie(a.severity, a.text) < std::tie(b.severity, b.text);
 }

@@ -162,6 +162,11 @@ void describe(const Comparison& self, Field& field) {
   field("notes", self.notes, "notes on the comparison");
 }
 
+/// Comparison of a model with the reference in which its ratio of rms to noise is largest: `first`, of the
+/// first reference, or that of a further reference with the same model. Wind and height do not count beside
+/// others, because their residuals contain gusts. An unknown ratio is the smallest.
+const ModelComparison& worst_by_noise(const Comparison& comparison, const ModelComparison& first);
+
 struct CompareOptions {
   MaskOptions mask;
   /// Maximum number of flights whose records are kept; statistics use all flights. If there are more, the

@@ -150,10 +150,6 @@ void describe(const ModelEffect& self, Field& field) {
   field("source", self.source, "source of the formula; absent for effects of the catalogue");
 }
 
-/// Id "reference:NAME" of an effect or coefficient of a system that the model is compared with.
-/// @param system needed if there are several systems: "reference:PSFRD+QCFR:NAME"; otherwise empty
-std::string id_on_other_system(const std::string& system, const std::string& name);
-
 /// Missing effect.
 struct Finding {
   ModelEffect effect;  ///< effect with the estimated coefficients, ready for a model
@@ -165,8 +161,13 @@ struct Finding {
   std::vector<CoefficientEstimate> estimates{};
   /// Parameters absorbed by the model's coefficients: neutral in `effect`, fixed in a refit.
   std::vector<std::string> held{};
-  double rms = 0.0;    ///< rms contribution to the residual over the samples used, hPa
-  double worst = 0.0;  ///< largest contribution, with sign, hPa
+  double rms = 0.0;  ///< rms contribution to the residual over the samples used, hPa
+  /// Largest of such contributions to the residual by a single reference, hPa: the first reference, or
+  /// another one except wind and height. A drift of a transducer hardly changes the residual by a laser, but
+  /// the total pressure.
+  double largest_rms = 0.0;
+  std::string largest_reference{};  ///< name of that reference; empty if it is the first one
+  double worst = 0.0;               ///< largest contribution, with sign, hPa
   std::string worst_flight;
   double worst_time = 0.0;  ///< s since 1970 UTC
   double chi2 = 0.0;        ///< evidence: decrease of chi2, the sum of squared whitened residuals
@@ -196,6 +197,9 @@ struct Finding {
   /// Id of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" if there are several.
   std::string id() const;
 
+  /// `largest_rms` with a unit and its reference: "0.440 hPa rms by total:PSFRD+QCFR".
+  std::string size_text(const char* unit = " hPa rms") const;
+
   /// Whether an effect on the static system of the model may be the cause: this one or an alias of at least
   /// 1 % probability.
   bool may_be_of_model() const;
@@ -215,6 +219,8 @@ void describe(const Finding& self, Field& field) {
   field("units", field.named(self.estimates, &CoefficientEstimate::unit), "units of the coefficients");
   field("estimates", self.estimates, "estimated coefficients");
   field("rms_hpa", self.rms, "contribution to the residual that the model does not absorb, rms");
+  field("largest_rms_hpa", self.largest_rms, "the same in the reference in which it is largest, rms");
+  field("largest_reference", self.largest_reference, "that reference; empty: the first one");
   field("worst_hpa", self.worst, "largest contribution of the effect alone, with sign");
   field("worst_flight", self.worst_flight, "flight of the largest contribution");
   field.time("worst_time", self.worst_time, "time of the largest contribution");

@@ -123,6 +123,10 @@ struct Improvement {
   std::string worse{};
 };
 
+/// Finding that was added in a step, from the diagnosis before it; null if the step added no finding under
+/// its own name. @param step index, at least 1
+const Finding* finding_of(const Improvement& improvement, std::size_t step);
+
 template <class Field>
 void describe(const Improvement& self, Field& field) {
   const auto rms = [&field](const char* key, double train, double holdout, const char* meaning) {

@@ -25,6 +25,8 @@ struct GpsDesign {
   double attack = 0.0;  ///< change with the attack, rms over the flight; NaN without that term
   bool by_wind = false;
   bool by_height = false;
+
+  bool determines_level() const { return level < 1.0; }
 };
 
 template <class Field>

@@ -138,7 +138,8 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
     {"true_airspeed", "m/s", "true airspeed of the recording system", Quantity::true_airspeed, -1500.0,
      1500.0},
     {"altitude", "m", "GPS altitude", Quantity::altitude, -5000.0, 100000},
-    {"vertical_speed", "m/s", "vertical speed of the aircraft", Quantity::vertical_speed, -1500.0, 1500.0},
+    {"vertical_speed", "m/s", "vertical speed of the aircraft, up positive", Quantity::vertical_speed,
+     -1500.0, 1500.0},
     {"latitude", "deg", "latitude, north positive", Quantity::latitude, -90.0, 90.0},
     {"pitch", "deg", "pitch, nose up positive", Quantity::pitch, -360.0, 360.0},
     {"roll", "deg", "roll, starboard wing down positive", Quantity::roll, -360.0, 360.0},
@@ -216,13 +217,13 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
 }};
 
 /// True if the index of every row equals its quantity.
-constexpr bool facts_are_in_order() {
+constexpr bool quantity_info_is_in_order() {
   for (std::size_t i = 0; i < quantity_count; ++i) {
     if (index(quantity_info[i].quantity) != i) return false;
   }
   return true;
 }
-static_assert(facts_are_in_order(), "quantity_info must have the order of the enumeration");
+static_assert(quantity_info_is_in_order(), "quantity_info must have the order of the enumeration");
 
 constexpr const QuantityInfo& info_of(Quantity quantity) { return quantity_info[index(quantity)]; }
 
