@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 
@@ -113,9 +112,11 @@ void require_laser(const ModelDefinition& model, const FlightSet& flights) {
 }  // namespace
 
 std::vector<std::string> in_order(std::vector<std::string> texts) {
-  constexpr std::array<std::string_view, 6> forms{"lams", "static", "pressure", "total", "height", "wind"};
-  const auto position_of = [&forms](const std::string& text) {
-    return std::find(forms.begin(), forms.end(), text.substr(0, text.find(':'))) - forms.begin();
+  const std::vector<std::string> all = reference_beginnings();
+  const auto position_of = [&all](const std::string& text) {
+    return std::find_if(all.begin(), all.end(),
+                        [&text](const std::string& each) { return text.rfind(each, 0) == 0; }) -
+           all.begin();
   };
   std::sort(texts.begin(), texts.end(), [&position_of](const std::string& a, const std::string& b) {
     return std::make_pair(position_of(a), a) < std::make_pair(position_of(b), b);

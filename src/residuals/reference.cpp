@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -77,8 +77,8 @@ struct Form {
   Pointer (*read)(const std::string& argument, const ModelDefinition& model);
 };
 
-/// All references.
-constexpr std::array<Form, 6> forms{{
+/// All references, in their order (`in_order`).
+constexpr Form forms[]{
     {"lams", "", "the laser air-motion sensor", read_lams},
     {"static", "OTHER.toml", "a second static system, by its model",
      [](const std::string& file, const ModelDefinition&) {
@@ -99,7 +99,7 @@ constexpr std::array<Form, 6> forms{{
      [](const std::string&, const ModelDefinition& model) { return height_reference(model); }},
     {"wind", "", "ground speeds in turns, reverse headings and speed runs",
      [](const std::string&, const ModelDefinition& model) { return wind_reference(model); }},
-}};
+};
 
 std::string usage_of(const Form& form) {
   return std::string(form.form) + (form.argument.empty() ? "" : fmt::format(":{}", form.argument));
@@ -159,10 +159,16 @@ Pointer wind_reference(const ModelDefinition& model) { return std::make_shared<W
 std::string reference_forms() {
   std::string text;
   for (const Form& each : forms) {
-    if (&each != &forms.front()) text += &each == &forms.back() ? " or " : ", ";
+    if (&each != std::begin(forms)) text += &each + 1 == std::end(forms) ? " or " : ", ";
     text += fmt::format("{} ({})", usage_of(each), each.meaning);
   }
   return text;
+}
+
+std::vector<std::string> reference_beginnings() {
+  std::vector<std::string> texts;
+  for (const Form& each : forms) texts.push_back(std::string(each.form) + (each.argument.empty() ? "" : ":"));
+  return texts;
 }
 
 Pointer read_reference(const std::string& text, const ModelDefinition& model) {

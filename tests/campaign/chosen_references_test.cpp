@@ -33,6 +33,11 @@ std::vector<std::string> names(const ChosenReferences& references) {
 
 }  // namespace
 
+TEST(ChosenReferences, OrderIsThatOfTheForms) {
+  EXPECT_THAT(pcor::in_order({"wind", "total:a.toml", "pressure:PS", "static:b.toml", "lams"}),
+              ElementsAre("lams", "static:b.toml", "pressure:PS", "total:a.toml", "wind"));
+}
+
 TEST(ChosenReferences, RequestedReferencesAreUsed) {
   const ChosenReferences chosen = pcor::read_references({"height", "pressure:PS_A"}, laser_model(), {});
   EXPECT_THAT(names(chosen), ElementsAre("height", "pressure:PS_A"));

@@ -7,6 +7,7 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/regimes/regimes.hpp>
+#include <pcor/residuals/reference.hpp>
 
 namespace pcor::tool {
 namespace {
@@ -68,7 +69,7 @@ Offer offer_of(const CLI::Option& option) {
     return {all_names(regime_info, [](const RegimeInfo& info) { return info.name; }), ""};
   if (value == "ID" || value == "EFFECT...")
     return {all_names(effect_info, [](const EffectInfo& info) { return info.id; }), ""};
-  if (value == "REFERENCE") return {{"lams", "height", "wind", "static:", "total:", "pressure:"}, ""};
+  if (value == "REFERENCE") return {reference_beginnings(), ""};
   if (value == "static:OTHER.toml") return {{"static:"}, ""};
   if (value == "FILE") return {{}, "*"};
   if (value == "FOLDER") return {{}, "*/"};

@@ -117,6 +117,9 @@ std::shared_ptr<const Reference> wind_reference(const ModelDefinition& model);
 /// ...".
 std::string reference_forms();
 
+/// Beginnings of these forms, such as "lams" or "static:", in the order of references (`in_order`).
+std::vector<std::string> reference_beginnings();
+
 /// Reference named by `text`, see `reference_forms`.
 ///
 /// @throws Error if the text has another form, the file of a static system cannot be read, or the
