@@ -9,7 +9,8 @@ int main(int argc, char** argv) try {
   if (argc != 2) return std::fprintf(stderr, "usage: model_loop MODEL.toml\n"), 2;
   const pcor::ModelDefinition file = pcor::read_model(argv[1]);
   std::string error;
-  auto loop = pcor::Loop::build(file.model, file.roles(), 25.0, &error);
+  auto loop = pcor::Loop::build(file.model, file.roles(), 25.0, &error, pcor::CorrectWith::model,
+                                pcor::uncertainty_of(file));
   if (!loop) throw pcor::Error(pcor::Error::Code::model, error);
 
   std::printf("%s reads", file.model.name.c_str());
@@ -26,7 +27,8 @@ int main(int argc, char** argv) try {
     s[Quantity::recovery_temperature] = 280.0;             // K
     s[Quantity::vapor_pressure] = 4.2;                     // hPa
     loop->run(sample / 25.0);
-    std::printf("p %.3f hPa, q %.3f hPa, T %.2f K, quality %u\n", s[Quantity::corrected_static_pressure],
+    std::printf("p %.3f +- %.3f hPa, q %.3f hPa, T %.2f K, quality %u\n",
+                s[Quantity::corrected_static_pressure], s[Quantity::corrected_static_pressure_uncertainty],
                 s[Quantity::corrected_dynamic_pressure], s[Quantity::ambient_temperature],
                 loop->quality().bits());
   }
