@@ -20,7 +20,7 @@ struct DERTBL {
   std::size_t place = 0;
 };
 
-/// Value of the dependency number `input` at this sample; NaN if it is missing.
+/// Value of the dependency number `input` at this sample; -32767 if it is missing.
 float GetSample(const DERTBL* entry, std::size_t input);
 void PutSample(const DERTBL* entry, float value);
 

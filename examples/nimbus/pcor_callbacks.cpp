@@ -1,6 +1,8 @@
 // Code that a host needs for pcor in its table of derived variables.
 #include "pcor_callbacks.hpp"
 
+#include <cmath>
+
 #include <pcor/realtime/nimbus.hpp>
 
 namespace {
@@ -12,7 +14,10 @@ using pcor::Quantity;
 // samples.
 struct Host {
   using Entry = DERTBL;
-  static double get(Entry* entry, std::size_t input) { return static_cast<double>(GetSample(entry, input)); }
+  static double get(Entry* entry, std::size_t input) {
+    const float value = GetSample(entry, input);
+    return value == -32767.0F ? std::nan("") : static_cast<double>(value);
+  }
   static void put(Entry* entry, double value) { PutSample(entry, static_cast<float>(value)); }
   static bool high_rate() { return FeedBack == HIGH_RATE_FEEDBACK; }
 };

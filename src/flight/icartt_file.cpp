@@ -182,6 +182,10 @@ class IcarttFile::Reader {
     while (static_cast<int>(all.size()) < requested) {
       for (const std::string& field : fields_of(next())) all.push_back(number(field));
     }
+    if (static_cast<int>(all.size()) > requested)
+      fail(
+          fmt::format("{} numbers are given here, but {} are required, one for each variable except the time",
+                      all.size(), requested));
     return all;
   }
 
@@ -268,8 +272,10 @@ class IcarttFile::Reader {
         const bool is_last = &variable == &file_.variables_.back();
         const bool is_empty = end == at;
         while (*end == ' ' || *end == '\t' || *end == '\r') ++end;
-        if (is_empty || (*end != ',' && !(is_last && *end == '\0')))
-          fail(fmt::format("{} numbers with commas between them are required here", file_.variables_.size()));
+        const bool ends = is_last ? trimmed(*end == ',' ? end + 1 : end).empty() : *end == ',';
+        if (is_empty || !ends)
+          fail(fmt::format("{} numbers with commas between them are required here; the line has {} fields",
+                           file_.variables_.size(), fields_of(line).size()));
         const bool is_missing =
             std::find(variable.missing.begin(), variable.missing.end(), value) != variable.missing.end();
         variable.values.push_back(is_missing ? nan : value * variable.scale);

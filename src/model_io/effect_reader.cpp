@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include <pcor/model/formula.hpp>
 #include <pcor/units/units.hpp>
+#include "model_io/model_names.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -199,11 +201,12 @@ class EffectReader final : TomlReader {
       effect.parameter_names.push_back(entry.key);
       effect.parameters.push_back(number(entry));
     }
-    check_formula(effect, formula, *parameters);
+    name_roles(variables_of(effect, formula, *parameters), *parameters, effect);
     return effect;
   }
 
-  void check_formula(const ModelEffect& effect, const Entry& formula_entry, const Entry& parameters) const {
+  // Variables of a formula, which is checked.
+  Names variables_of(const ModelEffect& effect, const Entry& formula_entry, const Entry& parameters) const {
     FormulaError error;
     const auto formula = Formula::parse(effect.formula, effect.parameter_names, &error);
     if (!formula) {
@@ -217,11 +220,28 @@ class EffectReader final : TomlReader {
            "multiply by it",
            quote(effect.id));
     }
-    if (formula->unused_parameters().empty()) return;
+    if (formula->unused_parameters().empty()) return formula->variables();
     const std::string& unused = formula->unused_parameters().front();
     const std::string meant = did_you_mean(unused, formula->variables());
     fail(*parameters.node, "the formula of effect {} does not use its parameter {}; {}", quote(effect.id),
          quote(unused), meant.empty() ? "remove the parameter" : meant);
+  }
+
+  // Replaces variables of roles by the names of the roles: a loop knows no other names.
+  void name_roles(const Names& variables, const Entry& parameters, ModelEffect& effect) const {
+    for (const std::string& name : variables) {
+      const Quantity role = role_of_variable(file_, name);
+      if (role == Quantity::count) continue;
+      const std::string role_name(info_of(role).name);
+      const Names& own = effect.parameter_names;
+      if (std::find(own.begin(), own.end(), role_name) != own.end()) {
+        fail(*parameters.node, "{} is a parameter of effect {} and the role of {}; rename the parameter",
+             quote(role_name), quote(effect.id), name);
+      }
+      // A letter after a digit or a point belongs to a number, as in 1.E5.
+      const std::regex word("(^|[^A-Za-z0-9_.])" + name + "(?![A-Za-z0-9_])");
+      effect.formula = std::regex_replace(effect.formula, word, "$1" + role_name);
+    }
   }
 
   EffectLocation place_of_action(const Entry& entry) const {

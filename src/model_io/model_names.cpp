@@ -1,5 +1,7 @@
 #include "model_io/model_names.hpp"
 
+#include <algorithm>
+
 namespace pcor::internal {
 
 std::vector<NamedParameter> named_parameters(const Model& model) {
@@ -17,6 +19,13 @@ const double* parameter_named(const Model& model, std::string_view name) {
     if (each.name == name) return &model.effects[each.effect].parameters[each.number];
   }
   return nullptr;
+}
+
+Quantity role_of_variable(const ModelDefinition& file, std::string_view name) {
+  if (quantity_named(name) != Quantity::count) return Quantity::count;
+  const auto found = std::find_if(file.variables.begin(), file.variables.end(),
+                                  [name](const auto& entry) { return entry.second == name; });
+  return found == file.variables.end() ? Quantity::count : found->first;
 }
 
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name) {

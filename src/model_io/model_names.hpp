@@ -30,6 +30,10 @@ std::vector<NamedParameter> named_parameters(const Model& model);
 /// Parameter of the model with a name like "static-qp.a2", or nullptr.
 const double* parameter_named(const Model& model, std::string_view name);
 
+/// Role that a name in a formula means as the name of its variable: the first such role; `Quantity::count`
+/// for the name of a quantity or of another variable.
+Quantity role_of_variable(const ModelDefinition& file, std::string_view name);
+
 /// Published recovery factor with this name, or nullptr.
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);
 

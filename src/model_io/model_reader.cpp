@@ -187,13 +187,7 @@ class Reader final : TomlReader {
     const Quantity quantity = role(entry);
     const std::string unit = text(entry, "a unit in quotes");
     const std::string requested(info_of(quantity).unit);
-    // Without pressure variables the names follow from the flight's aircraft.
-    if (file_.variables.count(quantity) == 0 && file_.variables.count(Quantity::static_pressure) != 0) {
-      fail(entry.position,
-           "the role {} has a unit but no variable; name its variable in "
-           "[variables], or remove it from [units]",
-           quote(entry.key));
-    }
+    require_variable(quantity, entry, "a unit");
     if (!is_known_unit(unit)) {
       fail(entry, "{}: unknown unit {}; give one that converts to {}", called(entry), quote(unit), requested);
     }
@@ -204,6 +198,14 @@ class Reader final : TomlReader {
     if (!file_.units.emplace(quantity, unit).second) {
       fail(entry.position, "the unit of {} is given twice; remove one", quote(entry.key));
     }
+  }
+
+  // Without pressure variables the names follow from the flight's aircraft.
+  void require_variable(Quantity role, const Entry& entry, std::string_view given) const {
+    if (file_.variables.count(role) != 0 || !names_pressures()) return;
+    fail(entry.position,
+         "the role {} has {} but no variable; name its variable in [variables], or remove it from {}",
+         quote(entry.key), given, entry.title);
   }
 
   void read_output(const Entry& section_entry) {
@@ -302,12 +304,19 @@ class Reader final : TomlReader {
 
   void read_policy(const Entry& section_entry) {
     Policy& policy = file_.model.policy;
+    std::string given;
+    const auto least = [&](const Entry& entry) {
+      if (!given.empty())
+        fail(entry.position, "{} and {} are the same limit; remove one", quote(given), quote(entry.key));
+      given = entry.key;
+      policy.min_dynamic_pressure = not_negative(entry);
+    };
     each(table(section_entry), "[policy]",
          {{"taper_below", [&](const Entry& entry) { policy.taper_below = not_negative(entry); }},
           {"taper_power", [&](const Entry& entry) { policy.taper_power = not_negative(entry); }},
           {"minimum", [&](const Entry& entry) { policy.minimum = number(entry); }},
-          {"least_dynamic_pressure",
-           [&](const Entry& entry) { policy.min_dynamic_pressure = not_negative(entry); }}});
+          {"least_dynamic_pressure", least},
+          {"min_dynamic_pressure", least}});
   }
 
   void read_domain(const Entry& section_entry) {
@@ -423,12 +432,7 @@ class Reader final : TomlReader {
       known.insert(known.end(), {"static_defect", "static_defect_ratio"});
       fail(entry.position, "there is no role {}; {}", quote(entry.key), suggestion_text(entry.key, known));
     }
-    if (file_.variables.count(quantity) == 0) {
-      fail(entry.position,
-           "the role {} has an uncertainty but no variable; name its variable in "
-           "[variables], or remove it from [uncertainty]",
-           quote(entry.key));
-    }
+    require_variable(quantity, entry, "an uncertainty");
     return quantity;
   }
 

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include <pcor/regimes/regimes.hpp>
 
 namespace pcor {
@@ -19,6 +22,23 @@ std::string climb(const char* direction, double rate, const RegimeCriteria& c) {
                      rate, c.climb_smoothing, c.phase_time);
 }
 
+struct AircraftSpeeds {
+  std::string_view registration;
+  RegimeCriteria (*criteria)();
+  double max_flap_speed;  ///< m/s
+};
+
+constexpr AircraftSpeeds aircraft_speeds[] = {{"N130AR", RegimeCriteria::c130, 92.6},
+                                              {"N677F", RegimeCriteria::gv, 113.2}};
+
+/// Entry of the aircraft whose registration is in the text, or nullptr.
+const AircraftSpeeds* speeds_of(std::string_view aircraft) {
+  const auto found = std::find_if(
+      std::begin(aircraft_speeds), std::end(aircraft_speeds),
+      [aircraft](const auto& each) { return aircraft.find(each.registration) != std::string_view::npos; });
+  return found == std::end(aircraft_speeds) ? nullptr : found;
+}
+
 }  // namespace
 
 RegimeCriteria RegimeCriteria::c130() { return {}; }
@@ -30,9 +50,13 @@ RegimeCriteria RegimeCriteria::gv() {
 }
 
 std::optional<RegimeCriteria> RegimeCriteria::of(std::string_view aircraft) {
-  if (aircraft.find("N130AR") != std::string_view::npos) return c130();
-  if (aircraft.find("N677F") != std::string_view::npos) return gv();
-  return std::nullopt;
+  const AircraftSpeeds* const known = speeds_of(aircraft);
+  return known == nullptr ? std::nullopt : std::optional(known->criteria());
+}
+
+double max_flap_speed(std::string_view aircraft) {
+  const AircraftSpeeds* const known = speeds_of(aircraft);
+  return (known == nullptr ? aircraft_speeds[0] : *known).max_flap_speed;
 }
 
 std::string criterion_of(Regime regime, const RegimeCriteria& c) {

@@ -7,6 +7,7 @@
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/lift.hpp>
+#include <pcor/regimes/regimes.hpp>
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -32,12 +33,6 @@ constexpr double robust_limit = 4.0;         // deviations
 constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
 constexpr std::size_t min_fast = 15;         // pieces
 constexpr int max_rounds = 10;
-
-/// Maximum speed with the flaps of an approach, m/s, indicated, from the flight manuals: C-130 180 kt with 50
-/// %, GV 220 kt with 20 deg. For other aircraft the limit of the C-130, which is slower.
-double flap_speed_of(const std::string& aircraft) {
-  return aircraft.find("N677F") == std::string::npos ? 92.6 : 113.2;
-}
 
 /// Relative deficit of the angle compared with the lift, and its standard error.
 struct Deficit {
@@ -241,7 +236,7 @@ void find_probabilities(std::vector<Piece>& pieces, double flap_speed) {
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
                                               double min_airspeed) {
   std::vector<Piece> pieces = pieces_of(samples, angle, min_airspeed);
-  const double flap_speed = flap_speed_of(samples.aircraft);
+  const double flap_speed = max_flap_speed(samples.aircraft);
   std::size_t fast = 0;
   for (Piece& piece : pieces) {
     if (!(piece.airspeed > flap_speed)) continue;

@@ -13,6 +13,7 @@
 #include <pcor/base/utc.hpp>
 #include "base/quoting.hpp"
 #include "flight/registration.hpp"
+#include "model_io/model_names.hpp"
 #include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/role_evidence.hpp"
@@ -125,10 +126,8 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
   const std::vector<std::string>& extras = chain.extra_names();
   for (std::size_t i = 0; i < extras.size(); ++i) {
     const std::string& name = extras[i];
-    const auto role = std::find_if(file.variables.begin(), file.variables.end(),
-                                   [&name](const auto& entry) { return entry.second == name; });
-    if (role != file.variables.end()) {
-      inputs.push_back({name, extra_quantity(i), conversion_of(role->first)});
+    if (const Quantity role = role_of_variable(file, name); role != Quantity::count) {
+      inputs.push_back({name, extra_quantity(i), conversion_of(role)});
       continue;
     }
     if (!flight.has(name)) {

@@ -37,8 +37,8 @@ class Completion {
       const auto role = static_cast<Quantity>(i);
       if (!is_chosen_above(role) && !has(role)) take(role);
     }
-    for (auto unit = file_.units.begin(); unit != file_.units.end();)
-      unit = has(unit->first) ? std::next(unit) : file_.units.erase(unit);
+    keep_known(file_.units);
+    keep_known(file_.uncertainty.roles);
     notes.push_back(fmt::format("roles by {}: {}", family_.name, fmt::join(taken_, ", ")));
     for (std::string& trap : traps_) notes.push_back(std::move(trap));
     return std::move(file_);
@@ -55,6 +55,13 @@ class Completion {
   }
 
   bool has(Quantity role) const { return file_.variables.count(role) != 0; }
+
+  /// Removes entries of roles without a variable.
+  template <class Value>
+  void keep_known(std::map<Quantity, Value>& entries) const {
+    for (auto entry = entries.begin(); entry != entries.end();)
+      entry = has(entry->first) ? std::next(entry) : entries.erase(entry);
+  }
 
   void set(Quantity role, const std::string& variable) {
     file_.variables[role] = variable;

@@ -83,6 +83,31 @@ TEST_F(Icartt, ErrorNamesTheLine) {
   EXPECT_THAT(refusal("70 people"), test::IsError(Error::Code::file, "flight.ict"));
 }
 
+// Further fields were dropped, and with decimal commas the numbers were those of other variables.
+TEST_F(Icartt, OtherNumberOfFieldsIsRefused) {
+  const auto refusal = [this](const std::string& text) {
+    write(text);
+    return test::error_of([this] { Flight flight(path_); });
+  };
+  const auto with_head = [](const std::string& old, const std::string& other) {
+    std::string text = head + values;
+    return text.replace(text.find(old), old.size(), other);
+  };
+  EXPECT_THAT(refusal(head + values + "47079, 850, 300, 0.3, 5, 6\n"),
+              test::IsError(Error::Code::file, "flight.ict:28", "4", "6"));
+  EXPECT_THAT(refusal(head + "47076,850,12,300,05,0,3\n" + values),
+              test::IsError(Error::Code::file, "flight.ict:25", "4", "7"));
+  EXPECT_THAT(refusal(with_head("1, 0.1, 1", "1, 1, 0.1, 1")),
+              test::IsError(Error::Code::file, "flight.ict:11", "3", "4"));
+  EXPECT_THAT(refusal(with_head("-9999, -9999, -9999", "-9999, -9999, -9999, -8888")),
+              test::IsError(Error::Code::file, "flight.ict:12", "3", "4"));
+}
+
+TEST_F(Icartt, CommaAfterTheLastFieldIsNoField) {
+  EXPECT_THAT(values_of(Flight(write(head + "47076, 850, 300, 0.3, \r\n47077, 851, 300, 0.4,\n")), "mach"),
+              ElementsAre(0.3, 0.4));
+}
+
 TEST_F(Icartt, TruncatedLastRecordIsDroppedAndReported) {
   // 0.35 may be 0.359, and a record of two numbers has lost two.
   for (const char* const cut : {"47079, 850, 300, 0.35", "47079, 850"}) {

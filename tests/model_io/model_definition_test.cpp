@@ -651,6 +651,41 @@ TEST(ModelDefinition, WriteAndReadRestoreEveryBit) {
   }
 }
 
+TEST(ModelDefinition, FormulaVariableOfARoleIsThatRole) {
+  const auto formula = [](const std::string& text, const std::string& parameters = "k = 1") {
+    return parsed(minimum +
+                  "ground_speed = \"E5\"\nrecovery_temperature = \"T\"\nroll = \"pitch\"\n[[effect]]\n" +
+                  "id = \"own\"\nformula = \"" + text + "\"\nparameters = { " + parameters + " }\n")
+        .model.effects[0]
+        .formula;
+  };
+  EXPECT_EQ(formula("T*k-T^2+TT/T2"), "recovery_temperature*k-recovery_temperature^2+TT/T2");
+  EXPECT_EQ(formula("k * min(PSFD, 1.E5)"), "k * min(static_pressure, 1.E5)");
+  EXPECT_EQ(formula("k*1.E5*E5 - 2E5"), "k*1.E5*ground_speed - 2E5")
+      << "E5 is a variable and part of a number";
+  EXPECT_EQ(formula("T * QCF", "T = 1"), "T * dynamic_pressure") << "T is a parameter";
+  EXPECT_EQ(formula("k * pitch"), "k * pitch") << "the name of a quantity comes first";
+  EXPECT_THAT(
+      error_of([&] { formula("roll * T * recovery_temperature", "roll = 1, recovery_temperature = 1"); }),
+      IsError(Error::Code::definition, "recovery_temperature", "T"));
+}
+
+TEST(ModelDefinition, SensorNoiseNeedsNoVariableWithoutPressures) {
+  const std::string start = "format = \"pcor-model/1\"\n";
+  for (const std::string section : {"[units]\nattack = \"deg\"\n", "[uncertainty]\nattack = 0.1\n"}) {
+    EXPECT_EQ(parse_error_of(start + section), std::nullopt) << section;
+    EXPECT_THAT(parse_error_of(minimum + section), IsError(Error::Code::definition, "attack")) << section;
+  }
+  EXPECT_EQ(parsed(start + "[uncertainty]\nattack = 0.1\n").uncertainty.roles.at(Quantity::attack), 0.1);
+}
+
+TEST(ModelDefinition, MinimumDynamicPressureHasTwoNames) {
+  const std::string alias = "[policy]\nmin_dynamic_pressure = 4.5\n";
+  EXPECT_EQ(parsed(minimum + alias).model.policy.min_dynamic_pressure, 4.5);
+  EXPECT_THAT(parse_error_of(minimum + alias + "least_dynamic_pressure = 5\n"),
+              IsError(Error::Code::definition, "min_dynamic_pressure", "least_dynamic_pressure"));
+}
+
 TEST(ModelDefinition, ArbitraryTextGivesAnErrorOnly) {
   std::mt19937_64 random(1);
   const std::string letters = "[]{}=\"'.,#\n\\ \t\r0-+_:eEnaifxu\x80\xff\x01" + std::string(1, '\0');

@@ -308,6 +308,32 @@ TEST_F(Process, FormulasUseVariablesOfTheFile) {
   for (std::size_t i = 0; i < after.size(); ++i) EXPECT_NEAR(after[i] - before[i], 1.0, 1e-6);
 }
 
+// The loop took TTRR, in degC in the file, for a further input in an unknown unit.
+TEST_F(Process, FormulaOfARoleEqualsThatOfTheLoop) {
+  write_flight(input_, 10, 1);
+  const ModelDefinition file = pressure_model(R"(
+recovery_temperature = "TTRR"
+[humidity]
+moist = false
+[[effect]]
+id = "thermal"
+formula = "3.0 + k * TTRR"
+parameters = { k = 0.01 }
+)");
+  process_flight(input_, file, output_);
+  std::string error;
+  auto loop = Loop::build(file.model, file.roles(), 1.0, &error);
+  ASSERT_TRUE(loop) << error;
+  EXPECT_TRUE(loop->extra_names().empty());
+  const std::vector<double> defect = read("PCOR", "hPa");
+  for (std::size_t i = 0; i < defect.size(); ++i) {
+    for (const auto& [role, variable] : file.variables)
+      loop->state()[role] = test::values_of(Flight(input_), variable, std::string(info_of(role).unit))[i];
+    loop->run(static_cast<double>(i));
+    EXPECT_NEAR(loop->state()[Quantity::static_defect], defect[i], 3e-7) << "a 32-bit float of 4 to 8 hPa";
+  }
+}
+
 TEST_F(Process, CalibratesARecordedAmbientTemperature) {
   write_series(
       test::sequence(100.0, 3),

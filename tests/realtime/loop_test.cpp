@@ -203,13 +203,13 @@ TEST(LoopOrder, TwoWritersOfAQuantityAreRefused) {
   loop.add(sum({}, x));
   std::string error;
   EXPECT_FALSE(loop.order(&error));
-  EXPECT_EQ(error, "two functors write 'THRUST'");
+  EXPECT_EQ(error, "two functors write 'THRUST'; combine them in one functor");
   EXPECT_FALSE(loop.order(nullptr));
 
   Loop corrected = build(c130(), level, 1.0);
   corrected.add(sum({}, Quantity::static_defect));
   EXPECT_FALSE(corrected.order(&error));
-  EXPECT_EQ(error, "two functors write 'static_defect'");
+  EXPECT_THAT(error, testing::HasSubstr("two functors write 'static_defect', one of them a stage"));
 }
 
 // The element of an unknown name, and variables that were not added.

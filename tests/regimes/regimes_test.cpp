@@ -316,8 +316,11 @@ TEST(Regimes, HaveNames) {
 TEST(Regimes, CriteriaDependOnTheAircraftRegistration) {
   EXPECT_GT(pcor::RegimeCriteria::of("N677F")->acceleration,
             pcor::RegimeCriteria::of("N130AR")->acceleration);
-  for (const char* unknown : {"", "N677", "G-LUXE", "Boeing 677"})
+  EXPECT_GT(pcor::max_flap_speed("GV N677F"), pcor::max_flap_speed("C-130 N130AR"));
+  for (const char* unknown : {"", "N677", "G-LUXE", "Boeing 677"}) {
     EXPECT_FALSE(pcor::RegimeCriteria::of(unknown)) << unknown;
+    EXPECT_EQ(pcor::max_flap_speed(unknown), pcor::max_flap_speed("N130AR")) << unknown;
+  }
 }
 
 TEST(Regimes, CriterionTextHasTheLimits) {

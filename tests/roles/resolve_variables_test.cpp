@@ -43,5 +43,22 @@ frost_point = ["FP"]
   EXPECT_EQ(humidities(), "DP+");
 }
 
+// The model could not be written after a fit.
+TEST(ResolveVariables, SensorNoiseOfAnAbsentRoleIsRemoved) {
+  const test::TemporaryDirectory folder;
+  const auto path = folder / "flight.nc";
+  test::make_flight(path, test::sequence(0, 3), [&](test::NetcdfMaker& maker) {
+    maker.text(NC_GLOBAL, "Aircraft", "N130AR");
+    for (const char* const name : {"PSFD", "QCF"}) maker.series(name, "hPa", {1, 2, 3});
+  });
+  ModelDefinition model;
+  model.uncertainty.roles = {{Quantity::static_pressure, 0.05}, {Quantity::attack, 0.1}};
+  Notes notes;
+  const ModelDefinition resolved = resolve_variables(model, Flight(path), notes);
+  EXPECT_THAT(resolved.uncertainty.roles,
+              testing::ElementsAre(testing::Pair(Quantity::static_pressure, 0.05)));
+  EXPECT_NO_THROW(write_model(resolved));
+}
+
 }  // namespace
 }  // namespace pcor

@@ -246,9 +246,13 @@ inline bool Loop::order(std::string* error) {
       }
     }
     for (const Quantity output : functor->outputs()) {
-      if (writer[index(output)] != nullptr) return fail("two functors write '" + to_string(output) + "'");
       const bool is_of_stage =
           std::find(stage_outputs_.begin(), stage_outputs_.end(), output) != stage_outputs_.end();
+      if (writer[index(output)] != nullptr) {
+        return fail("two functors write '" + to_string(output) + "'" +
+                    (is_of_stage ? ", one of them a stage of the model; write another variable"
+                                 : "; combine them in one functor"));
+      }
       const bool changes_over_time =
           (look_ahead_ && look_ahead_->reads(output)) || (wetness_ && output == Quantity::liquid_water);
       if (changes_over_time && !is_of_stage) {

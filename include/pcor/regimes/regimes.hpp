@@ -159,6 +159,10 @@ struct RegimeCriteria {
   static std::optional<RegimeCriteria> of(std::string_view aircraft);
 };
 
+/// Maximum indicated airspeed with the flaps of an approach, m/s, from the flight manuals: C-130 180 kt with
+/// 50 %, GV 220 kt with 20 deg. For other aircraft the limit of the C-130, which is slower.
+double max_flap_speed(std::string_view aircraft);
+
 /// Description of the detection of a regime, with the numbers of the criteria.
 std::string criterion_of(Regime regime, const RegimeCriteria& criteria = {});
 
