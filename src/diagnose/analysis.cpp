@@ -82,6 +82,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
     find_search(chosen);
     SearchOptions options;
     options.seed = seed_;
+    for (std::size_t f = 0; f < flight_count(); ++f) options.references.push_back(flight(f).reference);
     if (round == 0) {
       options.threshold = generous_threshold;
       options.max_effects = generous_effects;

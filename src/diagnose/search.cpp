@@ -23,9 +23,8 @@ constexpr double min_left = 1e-6;
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
-/// Size of an effect, relative to the strongest one, that errors of the linear search may imitate; 0.5 to 1.4
-/// % were seen beside a drift of 0.4 hPa/h and a gain of 1 %. A smaller effect is found after the strongest
-/// one is in the model.
+/// Size of an effect, relative to a stronger one, that errors of the linear search may imitate; 0.5 to 1.4 %
+/// were seen beside a drift of 0.4 hPa/h and a gain of 1 %.
 constexpr double linear_to = 0.02;
 
 // The mixture adds components with sizes larger and much smaller by `spread_of_sizes`; the small one
@@ -471,6 +470,29 @@ void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
   }
 }
 
+void Search::drop_errors_of_linearity(const std::vector<std::size_t>& references,
+                                      std::vector<std::size_t>& chosen) const {
+  const Eigen::Index count =
+      references.empty() ? 1 : as_index(*std::max_element(references.begin(), references.end())) + 1;
+  std::vector<Eigen::VectorXd> squares;  // of each effect, against each reference
+  for (const std::size_t group : chosen) {
+    const std::vector<Eigen::VectorXd> rows = leftover_rows(group, chosen);
+    squares.push_back(scores_->share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) {
+      Eigen::VectorXd of_flight = Eigen::VectorXd::Zero(count);
+      of_flight[references.empty() ? 0 : as_index(references[f])] = rows[f].squaredNorm();
+      return of_flight;
+    }));
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const bool is_small = std::any_of(squares.begin(), squares.end(), [&](const Eigen::VectorXd& strong) {
+      return linear_to * linear_to * strong.dot(squares[i]) > squares[i].sum() * squares[i].sum();
+    });
+    if (!is_small) kept.push_back(chosen[i]);
+  }
+  chosen = kept;
+}
+
 SearchResult Search::run(const SearchOptions& options) const {
   SearchResult result;
   std::vector<std::size_t> open;
@@ -510,20 +532,14 @@ SearchResult Search::run(const SearchOptions& options) const {
     seen.push_back(chosen);
   }
   if (!options.threshold) prefer_usual_shapes(chosen);
-  // Score of a chosen group, in units of the noise with all chosen groups.
-  const auto chi2_of = [&](std::size_t group) {
-    return score(group, chosen).chi2 * variance(set_without(chosen, group)) / variance(chosen);
-  };
   const auto first_weak = [&] {
-    double strongest = 0.0;
-    for (const std::size_t group : chosen) strongest = std::max(strongest, chi2_of(group));
     return std::find_if(chosen.begin(), chosen.end(), [&](std::size_t group) {
       const GroupScore now = score(group, chosen);
-      return !now.possible || !(now.equivalent > result.threshold) ||
-             chi2_of(group) < linear_to * linear_to * strongest;
+      return !now.possible || !(now.equivalent > result.threshold);
     });
   };
   for (auto weak = first_weak(); weak != chosen.end(); weak = first_weak()) chosen.erase(weak);
+  drop_errors_of_linearity(options.references, chosen);
   const std::vector<std::size_t> set = chosen;
   std::sort(chosen.begin(), chosen.end(),
             [&](std::size_t a, std::size_t b) { return score(a, set).chi2 > score(b, set).chi2; });

@@ -55,6 +55,7 @@ struct SearchOptions {
   std::optional<double> threshold{};  ///< replaces the threshold from draws and disables the gates
   std::size_t max_effects = 4;
   std::uint64_t seed = 1;
+  std::vector<std::size_t> references{};  ///< reference of each flight; empty: one for all
 };
 
 /// Standard deviation of the widest prior of an effect, in usual sizes.
@@ -161,6 +162,10 @@ class Search {
   void prefer_usual_shapes(std::vector<std::size_t>& chosen) const;
   /// Exchanges, joins and drops effects while the set becomes more likely.
   void improve(std::vector<std::size_t>& chosen, double price) const;
+  /// Drops effects that are smaller than 2 % of a stronger one in the references that see them: the search is
+  /// linear about the model, and finds such an effect after the stronger one is in the model.
+  void drop_errors_of_linearity(const std::vector<std::size_t>& references,
+                                std::vector<std::size_t>& chosen) const;
   double log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const;
   Eigen::VectorXd precision_of(std::size_t group, double times) const;
   bool is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const;
