@@ -428,9 +428,10 @@ class Look {
     if (!result_.model || has_law || !is_by_gps || (result_.by_gps && result_.by_gps->determines_level()))
       return;
     result_.notes.push_back(warning_note(fmt::format(
-        "no laser, second static system{} determine the level of delta-p, so a refit keeps its starting "
+        "neither a laser, a second static system nor {} the level of delta-p: a refit keeps its starting "
         "value",
-        result_.by_gps && result_.by_gps->by_wind ? ", circles or reverse headings" : " or wind by GPS")));
+        result_.by_gps && result_.by_gps->by_wind ? "circles or reverse headings determine"
+                                                  : "the wind by GPS determines")));
   }
 
   /// The part of a series that has values.

@@ -48,6 +48,15 @@ double flying_dynamic_pressure(const std::string& aircraft) {
                                         dry_air<double>());
 }
 
+/// Bits of samples that have no delta-p.
+constexpr auto prevent_delta_p = {Quality::static_pressure_missing,
+                                  Quality::dynamic_pressure_missing,
+                                  Quality::impossible_static_pressure,
+                                  Quality::impossible_dynamic_pressure,
+                                  Quality::effect_input_missing,
+                                  Quality::defect_exceeds_dynamic_pressure,
+                                  Quality::no_airflow};
+
 /// A variable of the file that the loop reads.
 struct Input : ModelInput {
   std::vector<double> values{};  // values of one block
@@ -153,7 +162,9 @@ class Processing {
     std::vector<bool> flying;
     for (const Input& input : inputs_) {
       if (input.quantity != Quantity::dynamic_pressure) continue;
-      flying = in_flight(read(input), summary_.flying_dynamic_pressure);
+      const std::vector<double> values = read(input);
+      flying = in_flight(values, summary_.flying_dynamic_pressure);
+      note_no_flight(input.variable, values);
     }
     std::vector<double> time;
     for (Input& input : inputs_) {
@@ -175,6 +186,17 @@ class Processing {
                ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
                : "readings of frozen sensors are treated as missing; --keep-frozen uses them");
     }
+  }
+
+  void note_no_flight(const std::string& variable, const std::vector<double>& dynamic_pressure) {
+    double maximum = nan;
+    for (const double value : dynamic_pressure) maximum = std::fmax(maximum, value);
+    did_not_fly_ = maximum < summary_.flying_dynamic_pressure;
+    if (!did_not_fly_) return;
+    summary_.notes.push_back(warning_note(fmt::format(
+        "the aircraft did not fly, or the unit of {} is wrong: its maximum is {:.1f} hPa, less than "
+        "the {:.0f} hPa of flight",
+        variable, maximum, summary_.flying_dynamic_pressure)));
   }
 
   /// Marks records with extended flaps unless an effect describes them: laws are usually fitted with flaps
@@ -223,18 +245,23 @@ class Processing {
   }
 
   /// Warns of fewer than 1 % corrected samples, with the most frequent reason. @throws Error if there are
-  /// none: the output is not written
+  /// none in a flight that flew: the output is not written
   void note_uncorrected() {
     constexpr std::size_t few = 100;
     if (few * summary_.corrected >= summary_.samples) return;
-    constexpr std::ptrdiff_t preventing = 5;  // the first bits: no results, or no delta-p
-    const auto first = summary_.flagged.begin();
-    const auto most = std::max_element(first, first + preventing);
-    const QualityInfo& reason = quality_info[static_cast<std::size_t>(most - first)];
-    const std::string text =
-        fmt::format("{} of {} samples could be corrected; most frequent reason: {}, {} ({} samples)",
-                    summary_.corrected, summary_.samples, reason.name, reason.meaning, *most);
-    if (summary_.corrected > 0) {
+    std::string text =
+        fmt::format("{} of {} samples could be corrected", summary_.corrected, summary_.samples);
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < quality_info.size(); ++i) {
+      const bool prevents = std::find(prevent_delta_p.begin(), prevent_delta_p.end(), quality_info[i].bit) !=
+                            prevent_delta_p.end();
+      if (prevents && summary_.flagged[i] > summary_.flagged[most]) most = i;
+    }
+    if (const std::size_t count = summary_.flagged[most]; count > 0) {
+      text += fmt::format("; most frequent reason: {}, {} ({} sample{})", quality_info[most].name,
+                          quality_info[most].brief, count, count == 1 ? "" : "s");
+    }
+    if (summary_.corrected > 0 || did_not_fly_) {
       summary_.notes.push_back(warning_note(text));
     } else {
       flight_.file().refuse(Error::Code::samples,
@@ -641,6 +668,7 @@ class Processing {
   std::vector<bool> frozen_;               // records in which any sensor is frozen; empty: none
   std::vector<bool> flaps_;                // records outside the law by extended flaps; empty: none
   std::vector<bool> outside_;              // records in flight outside the domain of the law; empty: none
+  bool did_not_fly_ = false;               // by the dynamic pressure
   std::size_t noted_ = 0;                  // samples of which results are available
   std::map<Quantity, std::string> names_;  // names of inputs and results in the output
   ProcessSummary summary_;

@@ -27,6 +27,11 @@ bool is_same(double a, double b) {
   return std::abs(a - b) <= rounding * std::abs(a);
 }
 
+void warn_once(Notes& notes, std::string text) {
+  Note note = warning_note(std::move(text));
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+}
+
 /// The unit in the model replaces the unit in the file. Either may be wrong. A sign that the aircraft's data
 /// state is known.
 void note_other_unit(const Flight& flight, const ModelDefinition& file, const VariableNaming& family,
@@ -44,10 +49,9 @@ void note_other_unit(const Flight& flight, const ModelDefinition& file, const Va
         is_same(a.scale(), b.scale()) || (stated == family.unit_of(name) && is_same(a.scale(), -b.scale()));
     if (same_scale && is_same(a.offset(), b.offset())) return;
   }
-  Note note = warning_note(fmt::format(
-      "{} is read in {} in place of {}, as [units] of the model or the data of the aircraft state", name,
-      quote(stated), quote(recorded)));
-  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+  warn_once(notes, fmt::format("{} is read in {} in place of {}, as [units] of the model or the data of the "
+                               "aircraft state",
+                               name, quote(stated), quote(recorded)));
 }
 
 /// Warns if the file calls the recovery temperature of a model the temperature of the air.
@@ -62,10 +66,9 @@ void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& note
   const bool is_ambient =
       says({"ambient", "static", "outside"}) || variable.attribute("standard_name") == "air_temperature";
   if (!is_ambient || says({"recovery", "total", "indicated"})) return;
-  notes.push_back(warning_note(fmt::format(
-      "{} is recovery_temperature in the model, but '{}' in the file; name it ambient_temperature, "
-      "or another variable",
-      name, variable.long_name.empty() ? "air_temperature" : variable.long_name)));
+  warn_once(notes, fmt::format("{} is recovery_temperature in the model, but '{}' in the file; name it "
+                               "ambient_temperature, or another variable",
+                               name, variable.long_name.empty() ? "air_temperature" : variable.long_name));
 }
 
 /// Whether model and flight state different aircraft.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -90,18 +91,8 @@ class PressureCheck {
 
   std::optional<ImpossiblePressure> static_pressure() const {
     if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
-    double of_height = nan;
-    double max_of_height = 0.1;
-    const std::string height = height_of(flight_, model_, family_);
-    if (!height.empty() && model_.units.count(Quantity::altitude) == 0) {
-      std::vector<double> expected = values_as(Quantity::altitude, flight_, family_, height);
-      if (const double middle = median(expected); middle > 11000.0)
-        max_of_height += 1e-5 * (middle - 11000.0);
-      if (!are_feet(static_pressure_, expected)) {
-        std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
-        of_height = ratio_of(static_pressure_, expected);
-      }
-    }
+    double of_height, max_of_height;
+    std::tie(of_height, max_of_height) = by_height();
     bool is_confirmed = false;
     std::optional<ImpossiblePressure> contradicted;
     const auto compare = [&](const PressurePair& pair, bool is_measured) {
@@ -115,7 +106,8 @@ class PressureCheck {
     };
     each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
     if (std::abs(of_height - 1.0) > max_of_height) {
-      const ImpossiblePressure wrong = finding(Quantity::static_pressure, of_height, "the height " + height);
+      const ImpossiblePressure wrong =
+          finding(Quantity::static_pressure, of_height, "the height " + height_of(flight_, model_, family_));
       // Two systems may be wrong by the same unit; by other amounts the height is.
       if (!is_confirmed || !wrong.unit.empty()) return wrong;
     }
@@ -144,30 +136,40 @@ class PressureCheck {
     return is_confirmed ? std::nullopt : contradicted;
   }
 
-  /// Also of units that the model states; one that differs from that of the file is then the likely cause.
+  /// Also of units that the model states; one that differs from that of the file is then the likely cause. An
+  /// exchange or a wrong unit holds in nearly all samples in flight, a failed sensor or a spike does not.
   std::optional<ImpossiblePressure> static_below_dynamic() const {
     constexpr double max_of_static = 1.5;
+    constexpr std::size_t a_minute = 60;  // values
     const std::vector<double> dynamic_pressure = values_of(Quantity::dynamic_pressure);
+    // In a wrong unit taxiing exceeds the absolute limit.
+    const double in_flight = std::max(flown, 0.2 * median(dynamic_pressure));
     std::vector<double> ratios;
     for (std::size_t i = 0; i < std::min(static_pressure_.size(), dynamic_pressure.size()); ++i) {
       const double ratio = static_pressure_[i] / dynamic_pressure[i];
-      if (dynamic_pressure[i] > flown && ratio > 0.0) ratios.push_back(ratio);
+      if (dynamic_pressure[i] > in_flight && ratio > 0.0) ratios.push_back(ratio);
     }
-    if (ratios.size() < fewest) return std::nullopt;
-    const double ratio = median(std::move(ratios));
-    if (!(ratio * max_of_static < 1.0)) return std::nullopt;
+    if (ratios.size() < a_minute) return std::nullopt;
+    std::sort(ratios.begin(), ratios.end());
+    if (!(ratios[ratios.size() * 95 / 100] * max_of_static < 1.0)) return std::nullopt;
+    const double ratio = ratios[ratios.size() / 2];
     const std::string& p = model_.variables.at(Quantity::static_pressure);
     const std::string& q = model_.variables.at(Quantity::dynamic_pressure);
-    /// Factor of the values if they are read in the unit of the file.
-    const auto by_file = [&](Quantity role) {
-      const std::string& recorded = flight_.variable(model_.variables.at(role)).units;
+    // Factor of the values if they are read in another unit.
+    const auto scale = [&](Quantity role, const std::string& unit) {
       const std::string stated = stated_unit(flight_, model_, family_, role);
-      return is_convertible(recorded, stated) ? UnitConversion::between(recorded, stated, {}).scale() : 1.0;
+      return is_convertible(unit, stated) ? UnitConversion::between(unit, stated, {}).scale() : 1.0;
     };
-    if (ratio * by_file(Quantity::static_pressure) * max_of_static >= 1.0)
-      return ImpossiblePressure{Quantity::static_pressure, ratio, q, flight_.variable(p).units};
-    if (ratio * max_of_static >= by_file(Quantity::dynamic_pressure))
-      return ImpossiblePressure{Quantity::dynamic_pressure, 1.0 / ratio, p, flight_.variable(q).units};
+    const std::string& unit_of_p = flight_.variable(p).units;
+    if (ratio * scale(Quantity::static_pressure, unit_of_p) * max_of_static >= 1.0)
+      return ImpossiblePressure{Quantity::static_pressure, ratio, q, unit_of_p};
+    std::vector<std::string> units{flight_.variable(q).units};
+    const auto [of_height, max_of_height] = by_height();
+    if (std::abs(of_height - 1.0) <= max_of_height) units.insert(units.end(), {"hPa", "Pa"});
+    for (const std::string& unit : units) {
+      if (ratio * max_of_static >= scale(Quantity::dynamic_pressure, unit))
+        return ImpossiblePressure{Quantity::dynamic_pressure, 1.0 / ratio, p, unit};
+    }
     return ImpossiblePressure{Quantity::static_pressure, ratio, q, "", true};
   }
 
@@ -186,6 +188,18 @@ class PressureCheck {
     const auto unit = model_.units.find(role);
     if (variable.empty()) return {};
     return values_as(role, flight_, family_, variable, unit == model_.units.end() ? "" : unit->second);
+  }
+
+  /// Ratio of the static pressure to that of the height, NaN if unknown, and its maximum difference from 1.
+  std::pair<double, double> by_height() const {
+    double max_of_height = 0.1;
+    const std::string height = height_of(flight_, model_, family_);
+    if (height.empty() || model_.units.count(Quantity::altitude) != 0) return {nan, max_of_height};
+    std::vector<double> expected = values_as(Quantity::altitude, flight_, family_, height);
+    if (const double middle = median(expected); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
+    if (are_feet(static_pressure_, expected)) return {nan, max_of_height};
+    std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
+    return {ratio_of(static_pressure_, expected), max_of_height};
   }
 
   ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {
@@ -218,8 +232,8 @@ std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, cons
   if (!wrong) wrong = check.dynamic_pressure();
   const std::optional<ImpossiblePressure> below = check.static_below_dynamic();
   if (!wrong || !below) return wrong ? wrong : below;
-  // An exchanged dynamic pressure is the static pressure of the height; a real one is lower, 0.8 of it at
-  // Mach 1.
+  // An exchanged dynamic pressure is the static pressure of the height; a real one is at most 0.83 of it up
+  // to Mach 0.97.
   constexpr double least = 1.2;
   const bool are_exchanged = wrong->role == Quantity::static_pressure && below->ratio < least * wrong->ratio;
   return are_exchanged ? below : wrong;
@@ -236,7 +250,8 @@ void require_possible_pressure(const Flight& flight, const ModelDefinition& mode
     throw Error(
         Error::Code::variable,
         fmt::format("{}; if static_pressure and dynamic_pressure are exchanged in the [variables] of the "
-                    "model, set static_pressure = \"{}\", otherwise the right unit in its [units]",
+                    "model, set static_pressure = \"{}\", otherwise the right unit in its [units], unless a "
+                    "sensor failed",
                     is_wrong, wrong->against));
   }
   throw Error(

@@ -22,7 +22,8 @@ struct ImpossiblePressure {
 /// pressure against the total pressures of other systems, within 10 %. Empty if
 /// one of them agrees, unless the height shows that all are in a wrong unit; if the height shows that the
 /// other system is wrong; if the flight has neither; or if the model states the unit itself, which is
-/// accepted unless the dynamic pressure in flight exceeds 1.5 times the static pressure. Mach 1.2 gives 1.4.
+/// accepted unless the dynamic pressure exceeds 1.5 times the static pressure in 95 % of the samples in
+/// flight, 60 or more. Mach 1.2 gives 1.4.
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model);
 
 /// @throws Error that names the variable, its unit, the contradicting evidence and the correction of the

@@ -571,6 +571,34 @@ TEST_F(Process, FlightWithoutACorrectedSampleIsRefusedWithTheReason) {
   }
 }
 
+// The reason given was one of no sample.
+TEST_F(Process, ReasonOfTheRefusalIsThatOfMostSamples) {
+  constexpr std::size_t records = 60;
+  const ModelDefinition model = pressure_model(R"(
+[[effect]]
+id = "own"
+where = "static"
+formula = "k * dynamic_pressure"
+parameters = { k = 2 }
+)");
+  write_series(test::sequence(50000.0, records), {{"PSFD", "hPa", std::vector<double>(records, 700.0)},
+                                                  {"QCF", "hPa", std::vector<double>(records, 60.0)}});
+  EXPECT_THAT(test::error_of([&] { process_flight(input_, model, output_); }),
+              test::IsError(Error::Code::samples, "defect_exceeds_dynamic_pressure", "60 samples"));
+}
+
+// A ground test ended a run of several flights, with the advice to check the units.
+TEST_F(Process, FlightThatDidNotFlyGivesAWarning) {
+  for (const double q : {-0.05, 0.5, 15.0}) {
+    write_series(test::sequence(50000.0, 45), {{"PSFD", "hPa", std::vector<double>(45, 1000.0)},
+                                               {"QCF", "hPa", std::vector<double>(45, q)}});
+    const ProcessSummary summary = process_flight(input_, pressure_model(""), output_);
+    EXPECT_THAT(summary.notes, Contains(test::Says("the aircraft did not fly"))) << q;
+    EXPECT_THAT(Flight(output_).attribute("pcor_notes"), HasSubstr("the aircraft did not fly")) << q;
+    EXPECT_EQ(summary.in_flight, 0U) << q;
+  }
+}
+
 TEST_F(Process, FewCorrectedSamplesGiveAWarning) {
   constexpr std::size_t records = 1000;
   const auto warnings = [&](std::size_t flown) {

@@ -57,7 +57,8 @@ TEST(ModelInputs, AmbientTemperatureAsRecoveryTemperatureGivesAWarning) {
                       {Quantity::dynamic_pressure, "QCF"},
                       {Quantity::recovery_temperature, "T"}};
     Notes notes;
-    model_inputs(Flight(path), file, chain_of(file.model, file.roles()), file.roles(), notes);
+    for (int i = 0; i < 2; ++i)  // a flight with two models of the same variable
+      model_inputs(Flight(path), file, chain_of(file.model, file.roles()), file.roles(), notes);
     return std::count_if(notes.begin(), notes.end(),
                          [](const Note& note) { return note.severity == Severity::warning; });
   };

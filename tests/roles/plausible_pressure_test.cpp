@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -34,11 +35,26 @@ class PlausiblePressure : public testing::Test {
     const auto path = folder_.path() / "flight.nc";
     {
       test::NetcdfMaker maker(path);
-      maker.time(test::sequence(0, 50));
-      maker.series("GGALT", "m", std::vector<double>(50, height));
+      maker.time(test::sequence(0, 60));
+      maker.series("GGALT", "m", std::vector<double>(60, height));
       for (std::size_t i = 0; i < systems.size(); ++i) {
         for (std::size_t k = 0; k < 2; ++k)
-          maker.series(names[i][k], "hPa", std::vector<double>(50, systems[i][k]));
+          maker.series(names[i][k], "hPa", std::vector<double>(60, systems[i][k]));
+      }
+    }
+    return Flight(path);
+  }
+
+  /// 1000 records without a height: `first` with one static and dynamic pressure, and the others.
+  Flight flight_of_two_parts(std::size_t first, std::array<double, 2> then, std::array<double, 2> later) {
+    const auto path = folder_.path() / "flight.nc";
+    {
+      test::NetcdfMaker maker(path);
+      maker.time(test::sequence(0, 1000));
+      for (std::size_t k = 0; k < 2; ++k) {
+        std::vector<double> values(1000, later[k]);
+        std::fill_n(values.begin(), first, then[k]);
+        maker.series(k == 0 ? "PSFD" : "QCF", "hPa", values);
       }
     }
     return Flight(path);
@@ -140,6 +156,33 @@ TEST_F(PlausiblePressure, StaticPressureBelowDynamicIsRefused) {
   EXPECT_FALSE(impossible_pressure(flight_of({{7.0, 15.0}}, 35000.0), model_of_pair())) << "not in flight";
   EXPECT_FALSE(impossible_pressure(flight_of({{-9999.0, 60.0}}, std::nan("")), model_of_pair()))
       << "a dead sensor";
+}
+
+// The median alone decided: a good flight was refused as exchanged.
+TEST_F(PlausiblePressure, SensorThatFailsInFlightIsNotExchanged) {
+  const auto is_refused = [&](std::size_t first, std::array<double, 2> then, std::array<double, 2> later) {
+    return impossible_pressure(flight_of_two_parts(first, then, later), model_of_pair()).has_value();
+  };
+  EXPECT_FALSE(is_refused(400, {700.0, 60.0}, {5.0, 60.0})) << "dead later in the flight";
+  EXPECT_FALSE(is_refused(25, {1000.0, 3447.0}, {1000.0, 0.1})) << "spikes on the ground";
+  EXPECT_TRUE(is_refused(20, {700.0, 60.0}, {70.0, 700.0})) << "exchanged, with some odd samples";
+}
+
+// Taxiing exceeds the 20 hPa of flight in a wrong unit.
+TEST_F(PlausiblePressure, TaxiDoesNotHideAWrongUnit) {
+  const Flight flight = flight_of_two_parts(300, {1000.0, 0.5}, {700.0, 60.0});
+  ModelDefinition stated = model_of_pair();
+  stated.units[Quantity::dynamic_pressure] = "psi";
+  EXPECT_TRUE(impossible_pressure(flight, stated));
+}
+
+// The advice was to exchange the pressures, although the height confirms the static pressure.
+TEST_F(PlausiblePressure, DynamicPressureInPascalsIsNamedIfTheHeightConfirmsTheStaticPressure) {
+  const auto wrong = impossible_pressure(flight_of({{700.0, 6000.0}}), model_of_pair());
+  ASSERT_TRUE(wrong);
+  EXPECT_EQ(wrong->role, Quantity::dynamic_pressure);
+  EXPECT_EQ(wrong->unit, "Pa");
+  EXPECT_FALSE(wrong->are_exchanged);
 }
 
 TEST_F(PlausiblePressure, StatedUnitThatMakesAPressureImpossibleIsNamed) {

@@ -81,7 +81,8 @@ std::string use_of_laser(const InspectArguments& options, const Inspection& flig
       shell_path(law->path.string()), fmt::join(roles, ", "));
 }
 
-/// Up to three commands to paste, in order, that test a model and produce a corrected flight with a report.
+/// Up to three commands to paste, in order, that test a model and, if a published model or a reference gives
+/// the level of delta-p, produce a corrected flight with a report.
 std::vector<std::string> next_commands(const InspectArguments& options, const Inspection& flight) {
   const std::string stamp =
       options.timestamp_alignment == TimestampAlignment::begin ? "" : " --time-stamp middle";
@@ -117,8 +118,6 @@ std::vector<std::string> next_commands(const InspectArguments& options, const In
   // error.
   const bool determines_level = flight.by_gps && flight.by_gps->determines_level();
   if (reference.empty() || (flight.is_corrected && !determines_level)) {
-    if (!reference.empty())
-      commands.push_back(command("compare", flight, model + stamp + reference + " --report compare.html"));
     commands.push_back(command("check", flight, model + stamp + " --report check.html"));
   } else {
     const std::string fitted = output_file("fitted.toml", {file});
@@ -237,11 +236,10 @@ void print_flown(const Inspection& flight) {
 }
 
 void print_by_gps(const GpsDesign& gps) {
-  constexpr double known = 1.0;  // hPa, as for the level
   const auto text = [](double error, const char* manoeuvre) {
     if (std::isnan(error)) return std::string("-");
-    return error < known ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
-                         : fmt::format("undetermined; requires {}", manoeuvre);
+    return error < GpsDesign::max_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
+                                        : fmt::format("undetermined; requires {}", manoeuvre);
   };
   say("\nexpected standard errors of delta-p by GPS ({}), from the manoeuvres alone\n",
       gps.by_wind && gps.by_height ? "wind and height"

@@ -26,7 +26,9 @@ struct GpsDesign {
   bool by_wind = false;
   bool by_height = false;
 
-  bool determines_level() const { return level < 1.0; }
+  static constexpr double max_error = 1.0;  ///< of a part that the flight determines, hPa
+
+  bool determines_level() const { return level < max_error; }
 };
 
 template <class Field>

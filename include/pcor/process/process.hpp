@@ -133,7 +133,7 @@ void describe(const ProcessSummary& self, Field& field) {
 ///
 /// @throws Error, and leaves `output` unchanged, if the flight or a variable of the model cannot be read, a
 /// unit is unknown, the model cannot be used, an uncertainty is requested that the model does not state, a
-/// name is already used, or the output cannot be written.
+/// name is already used, no sample of a flight that flew can be corrected, or the output cannot be written.
 ProcessSummary process_flight(const std::filesystem::path& input, const ModelDefinition& model,
                               const std::filesystem::path& output, const ProcessOptions& options = {});
 
