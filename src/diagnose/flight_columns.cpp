@@ -112,7 +112,7 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
       auto further = std::make_shared<FlightSamples>(*samples);
       further->notes.clear();
       further->reference = set.references[r]->read(files[file], further->time, further->notes);
-      mark_frozen(*further, &FlightSamples::reference, options.mask.min_airspeed);
+      mark_frozen(files[file], *further, &FlightSamples::reference, options.mask.min_airspeed);
       samples = std::move(further);
     }
     return samples;

@@ -169,7 +169,8 @@ class Processing {
     std::vector<double> time;
     for (Input& input : inputs_) {
       const std::vector<double> values = read(input);
-      const std::vector<Segment> frozen = find_frozen(input.quantity, values, flying);
+      const std::vector<Segment> frozen =
+          find_frozen(flight_, input.variable, input.quantity, values, flying);
       if (frozen.empty()) continue;
       if (time.empty()) time = record_times(flight_);
       summary_.notes.push_back(
@@ -225,8 +226,11 @@ class Processing {
       flaps_ = std::move(*extended);
       const std::string times = add_outside("flaps extended", flaps_);
       summary_.notes.push_back(warning_note(fmt::format(
-          "do not use results of {}: flaps extended in {} of {} records{}, without an effect of the model; "
+          "do not use {} of {}: flaps extended in {} of {} records{}, without an effect of the model; "
           "PCORFLAG has the bit outside_domain, and no uncertainty is given",
+          options_.correct_with == CorrectWith::lams
+              ? to_string("PCOR") + ", and other results without the bit corrected_with_lams,"
+              : "results",
           times, std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(),
           variable.empty() ? " (by the lift)" : "")));
     }

@@ -249,12 +249,13 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   return samples;
 }
 
-void internal::mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double min_airspeed) {
+void internal::mark_frozen(const Flight& flight, FlightSamples& samples, ModelSamples FlightSamples::*part,
+                           double min_airspeed) {
   const std::vector<bool> flying = in_flight(samples.motion.airspeed, min_airspeed);
   ModelSamples& read = samples.*part;
   for (const auto& [quantity, variable] : read.variables) {
     const std::vector<double>& values = *read.find(quantity);
-    const std::vector<Segment> frozen = find_frozen(quantity, values, flying);
+    const std::vector<Segment> frozen = find_frozen(flight, variable, quantity, values, flying);
     for (const Segment& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
     if (!frozen.empty())
       samples.notes.push_back(warning_note(frozen_text(variable, quantity, values, samples.time, frozen)));
@@ -308,7 +309,7 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
     samples.notes.push_back(std::move(note));
   read_flaps(flight, model, options.min_airspeed, samples);
   for (const auto part : {&FlightSamples::model, &FlightSamples::reference})
-    mark_frozen(samples, part, options.min_airspeed);
+    mark_frozen(flight, samples, part, options.min_airspeed);
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {
     samples.notes.push_back(

@@ -25,7 +25,8 @@ std::optional<std::vector<bool>> flaps_extended(const Flight& flight, const Mode
 
 /// Finds and marks sensors that freeze in the air, among the inputs of a part of the samples, model or
 /// reference, and adds notes. @param min_airspeed m/s; slower samples are not used
-void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double min_airspeed);
+void mark_frozen(const Flight& flight, FlightSamples& samples, ModelSamples FlightSamples::*part,
+                 double min_airspeed);
 
 /// Recorded series with contradictory signs: series that should increase together change in opposite
 /// directions, such as the vertical speed and the altitude if one is positive downward, or the heading and

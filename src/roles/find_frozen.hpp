@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/flight/flight.hpp>
 #include <pcor/model/quantity.hpp>
 #include <pcor/numerics/noise.hpp>
 
@@ -29,10 +30,19 @@ std::vector<Segment> find_frozen(const std::vector<double>& values, const std::v
 std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& values,
                                  const std::vector<bool>& flying);
 
+/// Segments of records in which a variable is frozen in flight, found in its means over the records and, if
+/// the flight has several samples in a record, in these: runs of 20 samples and more (0.8 s at 25 Hz) if the
+/// noise of the fifty samples before and after exceeds the resolution. A coarse or calm sensor, or one that
+/// repeats its values, is thus found by its means alone. A record with any frozen sample belongs to a
+/// segment.
+/// @param means of the records, NaN where missing
+std::vector<Segment> find_frozen(const Flight& flight, const std::string& variable, Quantity quantity,
+                                 const std::vector<double>& means, const std::vector<bool>& flying);
+
 /// True where a speed, or a dynamic pressure, is at least `minimum`; a missing value is like the last one.
 std::vector<bool> in_flight(const std::vector<double>& speed, double minimum);
 
-/// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
+/// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 records)".
 std::string frozen_text(const std::string& variable, Quantity quantity, const std::vector<double>& values,
                         const std::vector<double>& time, const std::vector<Segment>& frozen);
 

@@ -140,6 +140,8 @@ class Process : public testing::Test {
     return options;
   }
 
+  void expect_frozen(std::size_t count, int rate);
+
   std::vector<double> read(const std::string& name, const std::string& unit) {
     return test::values_of(Flight(output_), name, unit);
   }
@@ -492,9 +494,12 @@ TEST_F(FilteredTemperature, MissingSampleGivesAMissingResult) {
   EXPECT_EQ(summary.flagged[position], flagged);
 }
 
-// One sensor of a noisy flight is frozen for two minutes.
-TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
-  constexpr std::size_t first = 2000, count = 120, records = 4000;
+// One sensor of a noisy flight is frozen for two minutes; at 25 Hz for 15 s, which means of a second do not
+// show.
+void Process::expect_frozen(std::size_t count, int rate) {
+  constexpr std::size_t records = 1000;
+  const auto samples = static_cast<std::size_t>(rate);
+  const std::size_t first = 500 * samples, end = first + count * samples;
   for (const std::string frozen : {"PSFD", "QCF", "TTRR"}) {
     std::mt19937_64 engine(1);
     std::normal_distribution<double> noise(0.0, 0.05);
@@ -502,23 +507,24 @@ TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
     maker->time(test::sequence(50000.0, records));
     for (const auto& [name, unit, level] : level_flight) {
       std::vector<double> values;
-      for (std::size_t i = 0; i < records; ++i) {
-        const bool is_held = name == frozen && i > first && i < first + count;
-        const double value = level + std::sin(0.01 * static_cast<double>(i)) + noise(engine);
+      for (std::size_t i = 0; i < records * samples; ++i) {
+        const bool is_held = name == frozen && i > first && i < end;
+        const double value = level + std::sin(0.01 * static_cast<double>(i) / rate) + noise(engine);
         values.push_back(is_held ? values.back() : value);
       }
-      maker->series(name, unit, values);
+      maker->series(name, unit, values, rate);
     }
     maker.reset();  // writes it
     const ModelDefinition model = law_model();
     const ProcessSummary summary = process_flight(input_, model, output_);
     EXPECT_THAT(summary.notes, Contains(test::Says(frozen + " is frozen")));
+    EXPECT_THAT(summary.notes, Contains(test::Says(std::to_string(count) + " records")));
     const std::string result = frozen == "TTRR" ? "TASX" : "PSXC";
     const std::vector<double> missing_values = read(result, ""), flags = read("PCORFLAG", "");
     process_flight(input_, model, output_, steady());
     const std::vector<double> kept = read(result, ""), kept_flags = read("PCORFLAG", "");
-    for (std::size_t i = 0; i < records; ++i) {
-      const bool is_frozen = i >= first && i < first + count;
+    for (std::size_t i = 0; i < records * samples; ++i) {
+      const bool is_frozen = i >= first && i < end;
       ASSERT_EQ(has(flags[i], Quality::sensor_frozen), is_frozen) << i;
       ASSERT_EQ(std::isnan(missing_values[i]), is_frozen) << i;
       ASSERT_EQ(has(kept_flags[i], Quality::sensor_frozen), is_frozen) << i;
@@ -526,6 +532,10 @@ TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) {
     }
   }
 }
+
+TEST_F(Process, FrozenSensorGivesMissingValuesAndANote) { expect_frozen(120, 1); }
+
+TEST_F(Process, SensorFrozenForSecondsIsFoundAtTheRecordedRate) { expect_frozen(15, 25); }
 
 // The approach was corrected by a law that was not fitted there, without a bit: on GOTEX it is wrong by 1
 // hPa.
@@ -557,6 +567,26 @@ TEST_F(Process, ExtendedFlapsAreOutsideTheLawUnlessAnEffectDescribesThem) {
   EXPECT_EQ(outside(describes_flaps, 50.0), records - extended_from) << "an effect of zero describes nothing";
   describes_flaps.model.effects.back().parameters = {1.5};
   EXPECT_EQ(outside(describes_flaps, 50.0), 0U);
+}
+
+// The law has no part in samples that the laser corrects.
+TEST_F(Process, NoteOnFlapsExceptsSamplesCorrectedWithLams) {
+  constexpr std::size_t records = 40;
+  std::vector<Series> all{{"FLAPS", "percent", std::vector<double>(records, 50.0)},
+                          {"VLAMS", "m/s", std::vector<double>(records, 117.0)}};
+  for (const auto& [name, unit, level] : level_flight)
+    all.emplace_back(name, unit, std::vector<double>(records, level));
+  write_series(test::sequence(50000.0, records), all);
+  ModelDefinition model = lams_model();
+  model.variables[Quantity::flaps] = "FLAPS";
+  for (const CorrectWith with : {CorrectWith::model, CorrectWith::lams}) {
+    ProcessOptions options = steady();
+    options.correct_with = with;
+    const ProcessSummary summary = process_flight(input_, model, output_, options);
+    EXPECT_THAT(summary.notes,
+                Contains(test::Says(with == CorrectWith::lams ? "without the bit corrected_with_lams"
+                                                              : "do not use results of")));
+  }
 }
 
 // An output without a corrected sample was written with status 0. The search for extended flaps used

@@ -131,7 +131,7 @@ TEST(Allocation, LoopDoesNotAllocate) {
       s[Quantity::radome_dynamic_pressure] = 49.7 + 30.0 * std::sin(0.003 * i);
       s[Quantity::attack_differential_pressure] = -12.0 + 3.0 * wave;
       s[Quantity::sideslip_differential_pressure] = 1.2 * wave;
-      s[Quantity::recovery_temperature] = i % 777 == 0 ? std::nan("") : 280.0;
+      s[Quantity::recovery_temperature] = i % 777 == 0 ? std::nan("") : 280.0 + wave;
       s[Quantity::dew_point] = 272.0 + 15.0 * wave;
       s[Quantity::lams_airspeed] = i % 10000 < 3000 ? std::nan("") : 100.0 + 25.0 * std::sin(0.003 * i);
       s[pcor::extra_quantity(0)] = 50.0 + 60.0 * wave;

@@ -718,7 +718,8 @@ TEST(LoopInterval, UnevenStepInterruptsTheLaserFilterAtTheSameSamplesWithALag) {
     Loop loop = build(model, level, 1.0);
     std::vector<double> gaps;
     for (const double time : steps({{300, 1.0}, {1, 1.2}, {300, 1.0}})) {
-      run(loop, level, time);
+      // A laser with one value for five minutes is frozen.
+      run(loop, with(level, {{Quantity::lams_airspeed, 117.0 + 1e-6 * time}}), time);
       const State<double>& state = loop.state();
       if (state[Quantity::time] > 150.0 && std::isnan(state[Quantity::filtered_lams_temperature]))
         gaps.push_back(state[Quantity::time]);
@@ -781,7 +782,7 @@ TEST(LoopFrozen, ConstantSensorSetsABit) {
         Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed}) {
     const std::vector<bool> told = told_frozen(role, 0.05, 0.001, 5000, 9000);
     for (std::size_t i = 0; i < told.size(); ++i)
-      ASSERT_EQ(told[i], i >= 5000 + 19 && i < 9000) << i << " of " << pcor::info_of(role).name;
+      ASSERT_EQ(told[i], i >= 5000 + 124 && i < 9000) << i << " of " << pcor::info_of(role).name;
   }
 }
 
@@ -800,9 +801,68 @@ TEST(LoopFrozen, CoarseSensorIsFlaggedAfterFiveMinutes) {
 TEST(LoopFrozen, DropoutsDoNotRestartTheSearch) {
   for (const Quantity role : {Quantity::recovery_temperature, Quantity::dynamic_pressure}) {
     const std::vector<bool> told = told_frozen(role, 0.05, 0.001, 5000, 9000, 19);
-    for (std::size_t i = 0; i < told.size(); ++i)  // one of the first 20 samples is missing
-      ASSERT_EQ(told[i], i >= 5000 + 20 && i < 9000 && i % 19 != 0)
+    for (std::size_t i = 0; i < told.size(); ++i)  // seven of the first 132 samples are missing
+      ASSERT_EQ(told[i], i >= 5000 + 131 && i < 9000 && i % 19 != 0)
           << i << " of " << pcor::info_of(role).name;
+  }
+}
+
+// A vane with steps of 0.022 deg, in turbulence for ten minutes and then in calm air.
+TEST(LoopFrozen, CalmAirAfterTurbulenceSetsNoBit) {
+  const Sample flown{
+      {Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 60.0}, {Quantity::attack, 3.0}};
+  Model model;
+  model.effects = {{"static-attack", {0.0005}}};
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Loop loop = build(model, flown, 25.0);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> gauss;
+    double wave = 0.0;
+    for (int i = 0; i < 25 * 1200; ++i) {
+      const bool is_calm = i >= 25 * 600;
+      const double memory = std::exp(-0.04 / (is_calm ? 5.0 : 1.0));
+      wave = memory * wave + std::sqrt(1.0 - memory * memory) * (is_calm ? 0.01 : 0.7) * gauss(random);
+      run(loop,
+          {{Quantity::static_pressure, 700.0 + 0.02 * gauss(random)},
+           {Quantity::dynamic_pressure, 60.0 + 0.05 * gauss(random)},
+           {Quantity::attack, 0.022 * std::round((3.0 + wave) / 0.022)}},
+          0.04 * i);
+      ASSERT_FALSE(loop.quality().has(Quality::sensor_frozen)) << i << " of seed " << seed;
+    }
+  }
+}
+
+// A frozen laser is missing, so the model corrects; other frozen readings are used, without an uncertainty.
+TEST(LoopFrozen, FrozenSensorIsIdentifiedAndALaserMissing) {
+  const Sample flown{{Quantity::static_pressure, 700.0},
+                     {Quantity::dynamic_pressure, 67.6},
+                     {Quantity::recovery_temperature, 280.0},
+                     {Quantity::attack, 3.0},
+                     {Quantity::lams_airspeed, 121.0}};
+  Model model;
+  model.effects = {{"static-attack", {0.0005}}};
+  model.recovery = {{0.95}};
+  pcor::ModelUncertainty uncertainty;
+  uncertainty.static_defect = 0.3;
+  std::string error;
+  for (const Quantity frozen : {Quantity::attack, Quantity::lams_airspeed}) {
+    std::optional<Loop> loop = Loop::build(model, roles(flown), 25.0, &error, CorrectWith::lams, uncertainty);
+    ASSERT_TRUE(loop) << error;
+    std::mt19937 random(1);
+    std::normal_distribution<double> gauss(0.0, 0.05);
+    for (int i = 0; i < 1000; ++i) {
+      Sample sample = flown;
+      for (auto& [quantity, value] : sample) value += quantity == frozen && i > 500 ? 0.0 : gauss(random);
+      run(*loop, sample, 0.04 * i);
+    }
+    const bool is_laser = frozen == Quantity::lams_airspeed;
+    const auto& state = loop->state();
+    EXPECT_TRUE(loop->quality().has(Quality::sensor_frozen));
+    EXPECT_EQ(loop->is_frozen(Quantity::attack), !is_laser);
+    EXPECT_EQ(loop->is_frozen(Quantity::lams_airspeed), is_laser);
+    EXPECT_EQ(loop->quality().has(Quality::corrected_with_lams), !is_laser);
+    EXPECT_FALSE(std::isnan(state[Quantity::corrected_static_pressure]));
+    EXPECT_EQ(std::isnan(state[Quantity::static_defect_uncertainty]), !is_laser);
   }
 }
 
@@ -814,6 +874,27 @@ TEST(LoopFrozen, GroundSamplesSetNoBit) {
   for (int i = 0; i < 20000; ++i) {
     run(loop, parked, 0.04 * i);
     ASSERT_FALSE(loop.quality().has(Quality::sensor_frozen));
+  }
+}
+
+// Delta-p of the laser, which shows its lock, needs a thermometer; the temperature is then compared with that
+// of the standard atmosphere.
+TEST(Loop, LamsTemperatureWithoutLockOrThermometerIsMissing) {
+  Sample flown{{Quantity::static_pressure, 700.0},
+               {Quantity::dynamic_pressure, 67.6},
+               {Quantity::recovery_temperature, missing},
+               {Quantity::attack, 3.0},
+               {Quantity::lams_airspeed, 121.0}};
+  Model model;
+  model.effects = {{"static-qp", {0.03}}};
+  model.recovery = {{0.95}};
+  Loop loop = build(model, flown, 1.0);
+  run(loop, flown, 0.0);
+  EXPECT_NEAR(loop.state()[Quantity::lams_temperature], 282.7, 0.1);
+  for (const double unlocked : {140.0, 100.0}) {
+    flown[Quantity::lams_airspeed] = unlocked;
+    run(loop, flown, loop.last_time() + 1.0);
+    EXPECT_THAT(loop.state()[Quantity::lams_temperature], IsNan()) << unlocked;
   }
 }
 
@@ -864,12 +945,18 @@ TEST(LoopGap, RestartSetsABit) {
   EXPECT_EQ(own_bits(loop), 0U) << "after reset";
 }
 
-// Every sample restarts the watch of frozen sensors.
+// Every sample restarts the watch of frozen sensors, and the wait for later samples.
 TEST(LoopGap, WrongRateSetsABitAtEverySample) {
-  Loop loop = build(c130(), level, 25.0);
-  for (int i = 0; i < 5; ++i) {
-    run(loop, level, i);
-    EXPECT_EQ(loop.quality().has(Quality::after_gap), i > 0);
+  Model lagged = c130();
+  lagged.effects.push_back({"static-lag", {0.05}});
+  for (const Model& model : {c130(), lagged}) {
+    Loop loop = build(model, level, 25.0);
+    for (int i = 0; i < 5; ++i) {
+      run(loop, level, i);
+      EXPECT_EQ(loop.quality().has(Quality::after_gap), i > 0);
+    }
+    run(loop, level, missing);
+    EXPECT_TRUE(loop.quality().has(Quality::uneven_samples));
   }
 }
 

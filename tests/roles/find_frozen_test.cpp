@@ -4,8 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <numeric>
 #include <random>
 #include <vector>
+
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
 
 using pcor::internal::find_frozen;
 using testing::IsEmpty;
@@ -118,6 +123,61 @@ TEST(Frozen, DropoutsDoNotEndARun) {
 }
 
 }  // namespace
+
+/// Segments found in a variable that has 25 samples in each of 1200 records, all in flight.
+Spans found_fast(const Series& values) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path = directory / "flight.nc";
+  Series seconds, means;
+  for (std::size_t i = 0; i < values.size() / 25; ++i) {
+    seconds.push_back(static_cast<double>(i));
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(25 * i);
+    means.push_back(std::accumulate(first, first + 25, 0.0) / 25.0);
+  }
+  pcor::test::make_flight(path, seconds,
+                          [&](pcor::test::NetcdfMaker& file) { file.series("TTRR", "degC", values, 25); });
+  Spans spans;
+  for (const pcor::Segment& span :
+       find_frozen(pcor::Flight(path), "TTRR", pcor::Quantity::recovery_temperature, means,
+                   std::vector<bool>(means.size(), true)))
+    spans.emplace_back(span.first, span.count);
+  return spans;
+}
+
+/// 1200 s at 25 Hz. @param calm standard deviation in each last two minutes of ten
+Series fast_series(double noise, double resolution, double calm) {
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal;
+  Series values;
+  double wave = 0.0;
+  for (int i = 0; i < 30000; ++i) {
+    wave = 0.96 * wave + 0.28 * normal(engine) * (i % 15000 < 12000 ? noise : calm);
+    values.push_back(resolution * std::round((280.0 + std::sin(1e-3 * i) + wave) / resolution));
+  }
+  return values;
+}
+
+TEST(FrozenAtTheRecordedRate, EverySecondWithAFrozenSampleIsFound) {
+  Series values = fast_series(0.5, 0.001, 0.5);
+  EXPECT_THAT(found_fast(values), IsEmpty());
+  freeze(values, 250 * 25, 2 * 25);
+  freeze(values, 400 * 25 + 10, 5 * 25);
+  freeze(values, 600 * 25, 15 * 25);
+  freeze(values, 900 * 25, 60 * 25);
+  EXPECT_EQ(found_fast(values), Spans({{250, 2}, {400, 6}, {600, 15}, {900, 60}}));
+}
+
+TEST(FrozenAtTheRecordedRate, HeldOrCalmValuesAreNotFrozen) {
+  Series held = fast_series(0.5, 0.05, 0.5);
+  for (std::size_t i = 0; i < held.size(); i += 25) freeze(held, i, 25);
+  EXPECT_THAT(found_fast(held), IsEmpty()) << "1 Hz, each value 25 times";
+  freeze(held, 600 * 25, 60 * 25);
+  EXPECT_EQ(found_fast(held), Spans({{600, 60}}));
+  Series coarse = fast_series(0.5, 0.5, 0.5);
+  for (std::size_t i = 0; i < coarse.size(); i += 25) freeze(coarse, i, 25);
+  EXPECT_THAT(found_fast(coarse), IsEmpty()) << "1 Hz in steps of the noise";
+  EXPECT_THAT(found_fast(fast_series(0.7, 0.022, 0.01)), IsEmpty()) << "calm after turbulence";
+}
 
 TEST(Frozen, ConstantFlightIsFrozenOnlyForVaryingSensors) {
   const Series still(10800, 131.0);

@@ -501,7 +501,7 @@ class WhatTakesPart(DiagnosisTest):
                 file[name][first:first + count] = file[name][first]
         result = self.compare(flights=(flight,))
         self.assertEqual(result["masks"]["frozen"], 160)
-        for words in (r"VLAMS is frozen, at .* m/s from .* \(100 samples\)", r"QCF is frozen, .* \(60 samples\)"):
+        for words in (r"VLAMS is frozen, at .* m/s from .* \(100 records\)", r"QCF is frozen, .* \(60 records\)"):
             self.assertRegex(" ".join(note_texts(result)), words)
         self.assertEqual(self.compare()["masks"]["frozen"], 0)
 

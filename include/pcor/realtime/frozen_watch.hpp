@@ -27,15 +27,15 @@ inline constexpr std::array always_varying{Quantity::static_pressure,
 /// Detects a constant sensor, sample by sample.
 ///
 /// The permitted duration of a constant value follows from the resolution, the smallest step observed. If the
-/// noise is at least three such steps, the sensor is frozen after 20 samples of one value, or, if more, 20
-/// times its usual time at one value, or five times that of a typical sample. Otherwise, and with fewer than
-/// 50 known values, it is frozen after five minutes.
+/// noise is at least three such steps, the sensor is frozen after `fewest` samples of one value, or, if more,
+/// 20 times its usual time at one value, or five times that of a typical sample. Otherwise, and with fewer
+/// than 50 known values, it is frozen after `longest`.
 class SteadyValue {
  public:
-  /// @param longest samples that any sensor may have one value
-  explicit SteadyValue(std::size_t longest) : longest_(longest) {}
+  /// @param fewest samples that any sensor may have one value @param longest those of a coarse sensor
+  SteadyValue(std::size_t fewest, std::size_t longest) : fewest_(fewest), longest_(longest) {}
 
-  void reset() noexcept { *this = SteadyValue(longest_); }
+  void reset() noexcept { *this = SteadyValue(fewest_, longest_); }
 
   /// Ends the run of one value, as on the ground.
   void end() noexcept {
@@ -47,8 +47,8 @@ class SteadyValue {
   bool operator()(double value) noexcept {
     if (value == last_) {
       ++length_;
-      if (length_ == fewest) limit_ = limit();
-      return length_ >= fewest && length_ >= limit_;
+      if (length_ == fewest_) limit_ = limit();
+      return is_frozen();
     }
     if (!is_missing(last_)) end_of_run(value - last_);
     last_ = value;
@@ -57,20 +57,22 @@ class SteadyValue {
   }
 
  private:
-  static constexpr std::size_t fewest = 20;      // samples
   static constexpr std::size_t min_values = 50;  // required for typical values
   static constexpr double noisy = 3.0;           // steps of resolution in a second difference
-  static constexpr double part = 1.0 / 64.0;     // weight of the latest value in a running mean
+  static constexpr double part = 1.0 / 64.0;     // weight of a sample in a running mean
+
+  bool is_frozen() const noexcept { return length_ >= fewest_ && length_ >= limit_; }
 
   void end_of_run(double step) noexcept {
-    const bool was_frozen = length_ >= fewest && length_ >= limit_;
-    if (!was_frozen) {
+    double weight = part;
+    if (!is_frozen()) {
+      weight = std::min(1.0, part * static_cast<double>(length_));
       lengths_[runs_ % lengths_.size()] = length_;
       ++runs_;
     }
     resolution_ = std::min(resolution_, std::abs(step));
     const double bend = std::abs(step - (length_ > 1 ? 0.0 : last_step_));
-    is_bent_ += part * ((bend >= noisy * resolution_ ? 1.0 : 0.0) - is_bent_);
+    is_bent_ += weight * ((bend >= noisy * resolution_ ? 1.0 : 0.0) - is_bent_);
     last_step_ = step;
   }
 
@@ -85,9 +87,10 @@ class SteadyValue {
       squares += length * length;
     }
     const double usual = std::max(20.0 * sum / static_cast<double>(count), 5.0 * squares / sum);
-    return std::min(longest_, static_cast<std::size_t>(std::max(usual, static_cast<double>(fewest))));
+    return std::min(longest_, static_cast<std::size_t>(std::max(usual, static_cast<double>(fewest_))));
   }
 
+  std::size_t fewest_;
   std::size_t longest_;
   std::array<std::size_t, 64> lengths_{};  // lengths of the last runs of one value, in samples
   std::size_t runs_ = 0;
@@ -96,25 +99,43 @@ class SteadyValue {
   double last_ = missing<double>();
   double last_step_ = 0.0;
   double resolution_ = std::numeric_limits<double>::infinity();
-  double is_bent_ = 0.0;  // the part of values whose second difference is large
+  double is_bent_ = 0.0;  // the part of samples whose second difference is large
 };
 
-/// Detects inputs of a chain that are frozen in flight, among those that always vary. A missing value does
-/// not count: the values before and after it are neighbours. Does not allocate after construction.
+/// Detects inputs of a chain that are frozen in flight, among those that always vary: after 20 samples and
+/// five seconds, a coarse one after five minutes. A missing value does not count: the values before and after
+/// it are neighbours. Does not allocate after construction.
 class FrozenWatch {
  public:
   /// @param rate samples in a second
   FrozenWatch(const Chain& chain, double rate) {
-    constexpr double longest = 300.0;  // s
-    const double samples = std::min(std::max(longest * rate, 20.0), 1e9);
+    const auto samples = [rate](double seconds) {
+      return static_cast<std::size_t>(std::min(std::max(seconds * rate, 20.0), 1e9));
+    };
     for (const Quantity quantity : always_varying) {
-      if (chain.recorded(quantity))
-        sensors_.push_back({quantity, SteadyValue(static_cast<std::size_t>(samples))});
+      if (chain.recorded(quantity)) sensors_.push_back({quantity, {samples(5.0), samples(300.0)}});
     }
   }
 
   void reset() noexcept {
-    for (Sensor& sensor : sensors_) sensor.value.reset();
+    for (Sensor& sensor : sensors_) {
+      sensor.value.reset();
+      sensor.is_frozen = false;
+    }
+  }
+
+  /// True if the quantity was frozen at the last sample.
+  bool is_frozen(Quantity quantity) const noexcept {
+    return std::any_of(sensors_.begin(), sensors_.end(), [quantity](const Sensor& sensor) {
+      return sensor.quantity == quantity && sensor.is_frozen;
+    });
+  }
+
+  /// True if a quantity other than `excluded` was frozen at the last sample.
+  bool any_but(Quantity excluded) const noexcept {
+    return std::any_of(sensors_.begin(), sensors_.end(), [excluded](const Sensor& sensor) {
+      return sensor.quantity != excluded && sensor.is_frozen;
+    });
   }
 
   /// True if one of them is frozen at this sample.
@@ -126,11 +147,13 @@ class FrozenWatch {
     bool frozen = false;
     for (Sensor& sensor : sensors_) {
       const double value = value_of(sensor.quantity);
+      sensor.is_frozen = false;
       if (q < min_flight_pressure) {
         sensor.value.end();
       } else if (!is_missing(q + value)) {
-        frozen = sensor.value(value) || frozen;
+        sensor.is_frozen = sensor.value(value);
       }
+      frozen = frozen || sensor.is_frozen;
     }
     return frozen;
   }
@@ -139,6 +162,7 @@ class FrozenWatch {
   struct Sensor {
     Quantity quantity;
     SteadyValue value;
+    bool is_frozen = false;
   };
 
   std::vector<Sensor> sensors_;

@@ -58,7 +58,8 @@ enum class LaserFilter { with, without };
 /// that of the sample `delay()` runs earlier, including inputs and time; missing until that sample exists
 /// (bit `awaiting_later_samples`). Rates assume samples at the loop's rate: the bit `uneven_samples` marks
 /// samples whose rates include other intervals (`SampleClock`). A frozen input sets `sensor_frozen`
-/// (`FrozenWatch`). To flush the last samples before a gap or the end, call `run` with missing inputs.
+/// (`FrozenWatch`) and is used, without an uncertainty; a frozen laser is missing. To flush the last samples
+/// before a gap or the end, call `run` with missing inputs.
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.
@@ -131,6 +132,9 @@ class Loop {
   /// The time of the sample that was run last, s; NaN before the first and after `reset`.
   double last_time() const noexcept { return previous_time_; }
 
+  /// True if this input of the sample that the state is of is frozen (`FrozenWatch`).
+  bool is_frozen(Quantity quantity) const noexcept { return frozen_ && frozen_->is_frozen(quantity); }
+
   /// Disables the detection of frozen sensors, for hosts that detect them from the whole flight.
   void do_not_watch_sensors() noexcept { frozen_.reset(); }
 
@@ -149,14 +153,14 @@ class Loop {
 
   /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record. A
   /// sample that starts again (not the first, nor the first after `reset`) has the bit `after_gap`, or
-  /// `uneven_samples` if its time does not increase, or it or the time before is not finite; with a delay it
-  /// has `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and frozen
-  /// sensors are not found.
+  /// `uneven_samples` if its time does not increase, or it or the time before is not finite; with a delay
+  /// also `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and
+  /// frozen sensors are not found.
   void run(double time) noexcept {
     quality_.clear();
     double step = time - previous_time_;
     if (starts_anew(time)) {
-      if (!look_ahead_ && (started_ || !is_finite(time)))
+      if (started_ || !is_finite(time))
         quality_.set(is_finite(step) && step > max_step_ ? Quality::after_gap : Quality::uneven_samples);
       step = missing<double>();
       for (const auto& functor : functors_) functor->reset();
@@ -186,9 +190,14 @@ class Loop {
       return;
     }
     if (frozen_) quality_.set((*frozen_)(state_), Quality::sensor_frozen);
+    if (is_frozen(Quantity::lams_airspeed)) state_[Quantity::lams_airspeed] = missing<double>();
     if (low_pass_ != nullptr) reset_filter_at_uneven_step();
     if (uncertainty_ != nullptr) uncertainty_->keep_recorded(state_);
     for (const auto& functor : functors_) functor->compute(state_, quality_);
+    // Without the laser, which is missing.
+    if (frozen_ && frozen_->any_but(Quantity::lams_airspeed)) {
+      for (const UncertainResult& each : uncertain_results) state_[each.uncertainty] = missing<double>();
+    }
   }
 
  private:

@@ -246,7 +246,8 @@ struct AirState {
 
 /// Temperature (K) and dynamic pressure (hPa) from LAMS and the corrected pressures: `Chain::lams_air`. NaN,
 /// with the bit `lams_missing`, without lock (`has_laser_lock`). Without a thermometer the lock is unknown;
-/// the temperature, which does not need one, is then kept.
+/// the temperature, which does not need one, is then kept within a fifth (40 to 60 K) of that of the standard
+/// atmosphere up to 20 km.
 struct LamsAir {
   static Quantities reads(const Correction& correction) {
     return joined({{Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::humidity,
@@ -264,9 +265,14 @@ struct LamsAir {
     correction.chain.lams_air(state, parameters, flags);
     const auto has_lock = has_laser_lock(state);
     flags.set(!has_lock, Quality::lams_missing);
+    const S p = state[Quantity::corrected_static_pressure];
+    const S tropospheric = power(p / S(1013.25), 0.190263);
+    const S tropopause(216.65 / 288.15);
+    const S standard = S(288.15) * select(tropospheric < tropopause, tropopause, tropospheric);
     S& temperature = state[Quantity::lams_temperature];
-    temperature =
-        select(has_lock || is_missing(state[Quantity::lams_static_defect]), temperature, missing<S>());
+    const auto is_usual = temperature >= S(0.8) * standard && temperature <= S(1.2) * standard;
+    const auto is_kept = has_lock || (is_missing(state[Quantity::lams_static_defect]) && is_usual);
+    temperature = select(is_kept, temperature, missing<S>());
     S& pressure = state[Quantity::lams_dynamic_pressure];
     pressure = select(has_lock, pressure, missing<S>());
   }
