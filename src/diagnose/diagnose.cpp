@@ -230,29 +230,6 @@ Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoe
   return precision;
 }
 
-/// Sets the largest contribution of each finding to the residual by a single reference. The fraction that the
-/// model does not absorb is that of all references together. @param findings in the order of the search
-void add_largest_sizes(const Analysis& analysis, const References& references,
-                       std::vector<Finding>& findings) {
-  const std::vector<std::size_t>& chosen = analysis.result().chosen;
-  const Eigen::VectorXd coefficients = analysis.coefficients(chosen);
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    const Eigen::VectorXd own = coefficients(indices_of(analysis.groups()[chosen[i]], analysis.base()));
-    const double left = std::sqrt(analysis.search().remaining(chosen[i], own));
-    for (std::size_t r = 0; r < analysis.reference_count(); ++r) {
-      if (r > 0 && gps_kind(*references[r])) continue;
-      const double rms = left * rms_of(analysis.whole_share(), [&](std::size_t f) {
-                           return analysis.flight(f).reference == r
-                                      ? analysis.added_by(f, chosen[i], coefficients)
-                                      : std::vector<double>{};
-                         });
-      if (!(rms > findings[i].largest_rms)) continue;
-      findings[i].largest_rms = rms;
-      findings[i].largest_reference = r == 0 ? "" : references[r]->name();
-    }
-  }
-}
-
 /// @param dates on which a step is tried
 /// @param found receives the findings of the search, even if a variable of the files overrules them
 Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
@@ -290,8 +267,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
                           added_of(model, set.base, options.added), prior_of(references, set.base));
   diagnosis.threshold = analysis.result().threshold;
-  diagnosis.findings = findings_of(analysis, set.candidates);
-  add_largest_sizes(analysis, references, diagnosis.findings);
+  diagnosis.findings = findings_of(analysis, references, set.candidates);
   found = diagnosis.findings;
   advise(analysis, set.candidates, diagnosis.findings);
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
@@ -308,7 +284,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
   const double left = add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
   if (!flaps.candidates.empty())
-    diagnose_flaps(analysis, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
+    diagnose_flaps(analysis, references, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;

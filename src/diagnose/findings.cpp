@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include <pcor/effects/catalogue.hpp>
+#include "campaign/gps_rows.hpp"
 #include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/separation.hpp"
@@ -248,13 +249,14 @@ struct Added {
 };
 
 /// Rms that the model does not absorb, and extreme, over all used records: against the first reference or,
-/// for an effect on another system, against the references that see it.
+/// for an effect on another system, against the references that see it; and the largest rms against a single
+/// reference. The fraction that the model does not absorb is that of all references together.
 /// @param coefficients of all columns @param own those of the effect
-void measure(const Analysis& analysis, std::size_t group, const Eigen::VectorXd& coefficients,
-             const Eigen::VectorXd& own, const Candidate& candidate, Finding& finding) {
+void measure(const Analysis& analysis, const References& references, std::size_t group,
+             const Eigen::VectorXd& coefficients, const Eigen::VectorXd& own, const Candidate& candidate,
+             Finding& finding) {
   const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
     Added of_flight;
-    if (!candidate.is_measured_by(analysis.flight(f).reference)) return of_flight;
     const std::vector<double> added = analysis.added_by(f, group, coefficients);
     for (const std::size_t record : analysis.bins(f).records()) {
       of_flight.sum.add(added[record]);
@@ -265,14 +267,25 @@ void measure(const Analysis& analysis, std::size_t group, const Eigen::VectorXd&
     return of_flight;
   });
   SquareSum sum;
+  std::vector<SquareSum> sums(analysis.reference_count());
   for (std::size_t f = 0; f < of_flights.size(); ++f) {
+    const std::size_t reference = analysis.flight(f).reference;
+    sums[reference] += of_flights[f].sum;
+    if (!candidate.is_measured_by(reference)) continue;
     sum += of_flights[f].sum;
     if (std::abs(of_flights[f].worst) <= std::abs(finding.worst)) continue;
     finding.worst = of_flights[f].worst;
     finding.worst_flight = analysis.flight(f).samples->name;
     finding.worst_time = of_flights[f].worst_time;
   }
-  finding.rms = std::sqrt(analysis.search().remaining(group, own)) * sum.rms();
+  const double left = std::sqrt(analysis.search().remaining(group, own));
+  finding.rms = left * sum.rms();
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    const double rms = left * sums[r].rms();
+    if ((r > 0 && gps_kind(*references[r])) || !(rms > finding.largest_rms)) continue;
+    finding.largest_rms = rms;
+    finding.largest_reference = r == 0 ? "" : references[r]->name();
+  }
 }
 
 /// Description of the tried shape; empty for the shape of the catalogue.
@@ -353,7 +366,8 @@ double rms_of_column(const Analysis& analysis, const Candidate& candidate, Eigen
 
 }  // namespace
 
-std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates) {
+std::vector<Finding> findings_of(const Analysis& analysis, const References& references,
+                                 const std::vector<Candidate>& candidates) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const auto [estimate, covariance] = analysis.search().fit(chosen);
   const Eigen::VectorXd coefficients = analysis.coefficients(chosen, estimate);
@@ -376,7 +390,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     finding.estimates =
         estimates_of(candidate, identifiable, own, covariance.block(position, position, count, count));
     finding.held = held_of(candidate, identifiable);
-    measure(analysis, group, coefficients, own, candidate, finding);
+    measure(analysis, references, group, coefficients, own, candidate, finding);
     position += count;
     const std::vector<std::size_t> without = set_without(chosen, group);
     // In units of the noise with the effect: the score of the search has the noise without it.

@@ -8,7 +8,8 @@
 namespace pcor::internal {
 
 /// Findings of an analysis without advice, sorted by decreasing evidence.
-std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates);
+std::vector<Finding> findings_of(const Analysis& analysis, const References& references,
+                                 const std::vector<Candidate>& candidates);
 
 /// Adds to every finding with aliases the repeated regime that would separate it from them, and the
 /// probability of success.

@@ -23,7 +23,7 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
 
 /// Tests them together with the model and the findings of `analysis`, and adds the result or its upper limit
 /// to the diagnosis. @param groups of the columns of `flaps`
-void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std::vector<ColumnGroup> groups,
-                    std::uint64_t seed, Diagnosis& diagnosis);
+void diagnose_flaps(const Analysis& analysis, const References& references, const FlapsCandidates& flaps,
+                    std::vector<ColumnGroup> groups, std::uint64_t seed, Diagnosis& diagnosis);
 
 }  // namespace pcor::internal

@@ -154,6 +154,7 @@ TEST(DiagnosisOfATeam, FindsTheSameEffectWithFlapsExtended) {
   const Diagnosis diagnosis = expect_that_of_one(flights(flaps, 40), {lams_reference()}, options);
   ASSERT_THAT(diagnosis.findings, Not(IsEmpty()));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "flaps-gear");
+  EXPECT_GE(diagnosis.findings[0].largest_rms, diagnosis.findings[0].rms);
 }
 
 TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
