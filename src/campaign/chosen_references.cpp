@@ -92,21 +92,24 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
   return all;
 }
 
-/// @throws Error that names the laser of the first flight, if the model names none
+/// @throws Error that names the laser of a flight, if the model names none
 void require_laser(const ModelDefinition& model, const FlightSet& flights) {
   if (model.variables.count(Quantity::lams_airspeed) != 0 || flights.empty() || flights.path(0).empty())
     return;
-  const std::string laser = flights.share().of_each_flight<std::string>([&](std::size_t number) {
+  const auto lasers = flights.share().of_each_flight<std::string>([&](std::size_t number) {
     const Flight& flight = flights[number];
     return first_with_values(flight, family_of(model, flight), info_of(Quantity::lams_airspeed).name);
-  })[0];
-  if (laser.empty()) return;
+  });
+  const auto laser =
+      std::find_if(lasers.begin(), lasers.end(), [](const std::string& name) { return !name.empty(); });
+  if (laser == lasers.end()) return;
   throw Error(
       Error::Code::model,
-      fmt::format("{}: the reference lams (the default) needs the laser {}, which the model '{}' does not "
-                  "name; copy the model and add lams_airspeed = \"{}\" and the attack to its "
-                  "[variables], or give --reference static:OTHER.toml, pressure:PS, height or wind",
-                  flights.name(0), laser, model.model.name, laser));
+      fmt::format(
+          "{}: the reference lams (the default) needs the laser {}, which the model '{}' does not "
+          "name; copy the model and add lams_airspeed = \"{}\" and the attack to its "
+          "[variables], or give --reference static:OTHER.toml, total:PS+QC, pressure:PS, height or wind",
+          flights.name(static_cast<std::size_t>(laser - lasers.begin())), *laser, model.model.name, *laser));
 }
 
 }  // namespace

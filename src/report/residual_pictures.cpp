@@ -27,8 +27,7 @@ void add_regimes(Report& report, const std::vector<std::string>& residuals) {
   report.items.emplace_back(RegimePanel{
       "Residual by regime",
       "Dots are the mean in each regime, with its number of samples, bars the scatter about it; the rms is "
-      "at "
-      "the right. Arrows are means beyond the axis. A mean different from zero in one regime indicates a "
+      "at the right. Arrows are means beyond the axis. A mean different from zero in one regime indicates a "
       "missing effect that depends on the manoeuvre.",
       shown, "residual"});
 }

@@ -11,7 +11,6 @@
 
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
-#include "base/phrasing.hpp"
 #include "residuals/references/height.hpp"
 #include "residuals/references/lams.hpp"
 #include "residuals/references/pressure.hpp"
@@ -52,9 +51,12 @@ ModelDefinition read_system(const std::string& path) {
   return system;
 }
 
+bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
 /// Whether a text is two variables joined by +, and no file.
 bool is_pair(const std::string& text) {
-  return text.find('+') != std::string::npos && !std::filesystem::exists(text);
+  return contains(text, "+") && !contains(text, "/") && !contains(text, ".toml") &&
+         !std::filesystem::exists(text);
 }
 
 /// Model file, or two variables joined by +, which are not corrected.
@@ -109,15 +111,12 @@ std::string usage_of(const Form& form) {
 std::string nearest_form(const std::string& text) {
   if (text == "gps" || text == "GPS") return "height or wind";
   if (text == "laser") return "lams";
-  const bool has_form = text.find(':') != std::string::npos;
+  const bool has_form = contains(text, ":");
   if (!has_form && is_pair(text)) return "total:" + text;
-  if (!has_form && text.find(".toml") != std::string::npos) return "static:" + text;
+  // A model by its file or its name, like c130-psfrd-2003.
+  if (!has_form && (contains(text, ".toml") || contains(text, "-"))) return "static:" + text;
   std::vector<std::string> names;
-  std::vector<std::string> usages;
-  for (const Form& each : forms) {
-    names.emplace_back(each.form);
-    usages.push_back(usage_of(each));
-  }
+  for (const Form& each : forms) names.emplace_back(each.form);
   const std::vector<std::string> meant = suggest(text.substr(0, text.find(':')), names);
   for (const Form& each : forms) {
     if (!meant.empty() && each.form == meant.front()) return usage_of(each);
@@ -125,7 +124,7 @@ std::string nearest_form(const std::string& text) {
   if (!has_form &&
       std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isupper(c) != 0; }))
     return "pressure:" + text;
-  return join_list(usages, "or");
+  return reference_forms();
 }
 
 }  // namespace

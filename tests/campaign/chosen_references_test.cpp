@@ -98,3 +98,21 @@ TEST(ChosenReferences, NoLaserAndNoNameIsAnError) {
                 pcor::test::IsError(pcor::Error::Code::model, "short", "VLAMS", "[variables]", "static:"));
   }
 }
+
+TEST(ChosenReferences, LaserOfAnyFlightIsNamed) {
+  ModelDefinition model = laser_model();
+  model.variables.erase(Quantity::lams_airspeed);
+  const pcor::test::TemporaryDirectory folder;
+  const std::filesystem::path without = folder / "without.nc";
+  std::filesystem::copy_file(short_flight(), without);
+  int file = 0, variable = 0;
+  ASSERT_EQ(nc_open(without.c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "VLAMS", &variable), NC_NOERR);
+  ASSERT_EQ(nc_redef(file), NC_NOERR);
+  ASSERT_EQ(nc_rename_var(file, variable, "OTHER"), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+  EXPECT_THAT(pcor::test::error_of([&] {
+                pcor::read_references({}, model, {without, short_flight()});
+              }),
+              pcor::test::IsError(pcor::Error::Code::model, short_flight().filename().string(), "VLAMS"));
+}

@@ -43,7 +43,9 @@ TEST(Reference, UnknownTextIsRefusedWithTheValidForms) {
   for (const char* text :
        {"static:", "pressure:", "lams:", "lams:V", "wind:", "total", "PS_A", ":", "static", "LAMS"})
     EXPECT_THAT(refusal(text, with_laser()), test::IsError(Error::Code::usage, text)) << text;
-  EXPECT_THAT(refusal("static:absent.toml", with_laser()), test::IsError(Error::Code::file, "absent.toml"));
+  for (const char* text : {"static:absent.toml", "static:my+absent.toml", "total:my+absent.toml"})
+    EXPECT_THAT(refusal(text, with_laser()), test::IsError(Error::Code::file, "absent.toml")) << text;
+  EXPECT_THAT(refusal("psfrd", with_laser()), test::IsError(Error::Code::usage, reference_forms()));
 }
 
 TEST(Reference, LaserMissingFromTheModelIsRefused) {

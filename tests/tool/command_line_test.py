@@ -198,10 +198,11 @@ class Hints(ComparisonTest):
         for words, meant in ((("--figures",), "pcor-figures"), (("--processes", "2"), "pcor_mpi"), (("--html", "a.html"), "--report"),
                              (("--plot",), "--report")):
             self.assertIn(f"did you mean {meant}?", self.refused(*compare, *words, words=[words[0]], status=2))
+        self.assertNotIn("--report", self.refused("add", "--html", words=["--html"], status=2))
         self.assertIn("did you mean compare?", self.refused("evaluate", ONE, words=["evaluate"], status=2))
         for reference, meant in (("static:PSFRD+QCFR", "total:PSFRD+QCFR"), ("PSFRD+QCFR", "total:PSFRD+QCFR"), ("gps", "height or wind"),
                                  ("laser", "lams"), ("PSFRD", "pressure:PSFRD"), ("winds", "wind"), ("static", "static:OTHER.toml"),
-                                 ("other.toml", "static:other.toml")):
+                                 ("other.toml", "static:other.toml"), ("c130-psfrd-2003", "static:c130-psfrd-2003")):
             message = self.refused(*compare, "--reference", reference, words=[meant])
             self.assertLessEqual(len(message), 160)
 

@@ -29,7 +29,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> other_nam
 
 std::string hint_of(const std::string& wrong, const std::vector<std::string>& known) {
   for (const auto& [other, meant] : other_names) {
-    if (wrong == other) return fmt::format("did you mean {}?", meant);
+    if (wrong == other && (meant[0] != '-' || contains(known, std::string(meant))))
+      return fmt::format("did you mean {}?", meant);
   }
   return did_you_mean(wrong, known);
 }
