@@ -388,13 +388,14 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
   return result;
 }
 
+double ModelComparison::noise_ratio() const { return is_by_gps() ? nan : all.rms_over_noise(); }
+
 const ModelComparison& worst_by_noise(const Comparison& comparison, const ModelComparison& first) {
   const ModelComparison* worst = &first;
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models) {
-      const double largest = worst->is_by_gps() ? 0.0 : std::fmax(worst->all.rms_over_noise(), 0.0);
-      if (model.name == first.name && !model.is_by_gps() && model.all.rms_over_noise() > largest)
-        worst = &model;
+      if (model.name != first.name || model.is_by_gps()) continue;
+      if (worst->is_by_gps() || model.noise_ratio() > std::fmax(worst->noise_ratio(), 0.0)) worst = &model;
     }
   }
   return *worst;

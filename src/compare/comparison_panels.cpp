@@ -185,11 +185,11 @@ void ComparisonPanels::add_tables() {
 
 namespace {
 
-/// Comparison of the rms with the noise; by GPS the noise contains errors of the model.
+/// Comparison of the rms with the noise; empty if it is unknown.
 std::string over_noise(const ModelComparison& model) {
-  if (model.is_by_gps()) return "";
-  return fmt::format(", {:.1f} times the noise of {:.3f} hPa", model.all.rms_over_noise(),
-                     model.all.noise_rms);
+  const double ratio = model.noise_ratio();
+  if (std::isnan(ratio)) return "";
+  return fmt::format(", {:.1f} times the noise of {:.3f} hPa", ratio, model.all.noise_rms);
 }
 
 }  // namespace
@@ -247,9 +247,9 @@ Report comparison_report(const Comparison& comparison) {
   panels.report().title =
       worst.is_by_gps()
           ? fmt::format("Residual by {}: {}", best.reference, fmt::join(names, "; "))
-          : fmt::format("{}{}: rms residual {:.3f} hPa{}, {:.1f} times the noise",
+          : fmt::format("{}{}: rms residual {:.3f} hPa{}{}",
                         comparison.models.size() > 1 ? "Smallest error: " : "", best.name, worst.all.rms,
-                        &worst == &best ? "" : " by " + worst.reference, worst.all.rms_over_noise());
+                        &worst == &best ? "" : " by " + worst.reference, internal::over_noise(worst));
   panels.report().subtitle = "Comparison with " + comparison.reference;
   panels.summarise();
   // The further references follow the first sentence.

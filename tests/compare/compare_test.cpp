@@ -82,6 +82,21 @@ TEST(Compare, ShiftOfTheLawAppearsAsBias) {
   EXPECT_LT(result.models[1].r_squared, result.models[0].r_squared);
 }
 
+// A residual of zero has no noise, so that its ratio is unknown.
+TEST(Compare, WindDoesNotCountBesideAnUnknownRatio) {
+  Comparison comparison;
+  Comparison& further = comparison.further.emplace_back();
+  for (auto* const each : {&comparison, &further}) each->models.emplace_back().name = "a model";
+  comparison.models[0].reference = "wind";
+  comparison.models[0].all.rms = 2.0;
+  comparison.models[0].all.noise_rms = 1.0;
+  further.models[0].reference = "total:PSFRD+QCFR";
+  EXPECT_EQ(&worst_by_noise(comparison, comparison.models[0]), &further.models[0]);
+  const pcor::Report report = pcor::comparison_report(comparison);
+  for (const std::string& text : {report.title, report.summary[0], report.summary[1]})
+    EXPECT_THAT(text, testing::Not(HasSubstr("nan")));
+}
+
 // The mean residual of a climb contains the shear of the wind, up to three of its stated errors.
 TEST(Compare, SeparatesTheAtmosphereFromTheBiasAgainstWind) {
   std::vector<ComparedModel> contenders{laser_contender(), laser_contender(0.001)};

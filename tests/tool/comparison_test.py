@@ -291,6 +291,15 @@ class Compare(ComparisonTest):
             if len(models) == 1:
                 self.assertRegex(run.stdout.rstrip().splitlines()[-1], "pcor refit .* --reference height --reference wind ")
 
+    def test_heights_alone_advise_no_refit(self):
+        """Heights do not determine the level of delta-p, so that a refit to them keeps that of the model."""
+        zeros, page, output = self.model(replace(r" = [\d.]+ \}$", " = 0 }")), self.path / "compare.html", self.path / "compare.json"
+        text = self.run_tool("compare", ONE, "-m", zeros, "--reference", "height", "--report", page, "--json", output).stdout.splitlines()
+        self.assertIn("GPS does not determine the mean delta-p error", text[0])
+        self.assertIn(f'aria-label="Summary"><ul>\n<li>{text[0]}</li>', page.read_text())
+        self.assertNotIn("refit", text[-1])
+        self.assertEqual(set(json.loads(output.read_text())["worst_references"][0]), {"name", "reference"})
+
     def test_gps_supports_only_a_model_with_a_small_error(self):
         """The law is true; only circles determine the level to 0.15 hPa, half the limit."""
         circles = self.path / "circles.nc"
@@ -497,8 +506,12 @@ class References(ComparisonTest):
                 self.assertIn(f"{ratios[worst]:.1f} times the noise by {worst}", text)
                 self.assertIn(f"pcor {command} ", text)
                 html = report.read_text()
-                self.assertIn(f"{ratios[worst]:.1f} times the noise</h1>", html)
+                self.assertRegex(html, f"{ratios[worst]:.1f} times the noise of [0-9.]+ hPa</h1>")
                 self.assertIn(f"pcor {command} ", html)
+        # A wrong law too: the reason for a refit is a ratio that a refit changes.
+        text = self.done("compare", flight, "-m", self.model(with_a0(0.007))).stdout.splitlines()[-1]
+        self.assertRegex(text, r"The rms is [\d.]+ times the noise by lams, and [\d.]+ times the noise by total:PSFRD\+QCFR, "
+                               r"which a refit does not change\. To refit its coefficients: ")
 
     def test_static_system(self):
         """Both laws are true, so the residual is the noise of two transducers, each about 0.01 hPa."""

@@ -145,7 +145,7 @@ void print_short(const Comparison& comparison, const RowNames& rows) {
   }
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models) {
-      const double ratio = model.is_by_gps() ? std::nan("") : model.all.rms_over_noise();
+      const double ratio = model.noise_ratio();
       say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa{}\n", rows.of(model), further.reference,
           model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
           std::isnan(ratio) ? "" : fmt::format(", ratio {:.1f}", ratio));
@@ -280,7 +280,7 @@ struct ComparisonWithGps {
 };
 
 /// Whether the rms is close to the noise; the largest ratio by all references decides.
-bool is_close_to_noise(const ModelComparison& worst) { return worst.all.rms_over_noise() < 1.15; }
+bool is_close_to_noise(const ModelComparison& worst) { return worst.noise_ratio() < 1.15; }
 
 template <class Field>
 void describe(const ComparisonWithGps& self, Field& field) {
@@ -290,7 +290,9 @@ void describe(const ComparisonWithGps& self, Field& field) {
                const ModelComparison& worst = worst_by_noise(self.comparison, model);
                of_one("name", model.name, "name of the model");
                of_one("reference", worst.reference, "reference; wind and height only if there are no others");
-               of_one("rms_over_noise", worst.all.rms_over_noise(), "rms residual divided by the rms noise");
+               if (!of_one.has(!std::isnan(worst.noise_ratio()))) return;
+               of_one("rms_over_noise", worst.noise_ratio(),
+                      "rms residual divided by the rms noise; absent by GPS");
                of_one("close_to_noise", is_close_to_noise(worst), "whether the ratio is less than 1.15");
              });
   if (!field.has(!self.levels.empty())) return;
@@ -302,7 +304,6 @@ void describe(const ComparisonWithGps& self, Field& field) {
              });
 }
 
-constexpr double max_level_error = 1.0;  // hPa; above it GPS does not determine the level
 // hPa, error of delta-p of a model that is worth applying: the rms of the published laws
 // (data/models/README.md).
 constexpr double max_model_error = 0.3;
@@ -312,19 +313,21 @@ enum class Support { supported, undecided, refuted };
 
 /// Whether the residuals are consistent with the model. By GPS the error of its delta-p and two standard
 /// errors are small; the rms of all residuals not by GPS is close to the noise. Effects with zero
-/// coefficients correct nothing. @param worst of all references
+/// coefficients correct nothing, which a reference that determines the level shows. @param worst of all
+/// references
 Support support_of(const ModelComparison& worst, const ModelDefinition& model, const Levels& levels) {
+  const LevelByGps* const level = level_of(levels, worst.name);
+  if (worst.is_by_gps() && level != nullptr && !level->is_determined()) return Support::undecided;
   const std::vector<ModelEffect>& effects = model.model.effects;
   const bool is_zero = std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
     return !effect.is_surface() && std::all_of(effect.parameters.begin(), effect.parameters.end(),
                                                [](double value) { return value == 0.0; });
   });
   if (is_zero && !effects.empty()) return Support::refuted;
-  const LevelByGps* const level = level_of(levels, worst.name);
   if (level != nullptr) {
     const double margin = 2.0 * level->standard_error;
     const bool is_small = std::abs(level->missing) + margin <= max_model_error;
-    const bool is_off = std::abs(level->missing) > margin && level->standard_error < max_level_error;
+    const bool is_off = std::abs(level->missing) > margin && level->is_determined();
     if (is_off && !is_small) return Support::refuted;
     if (worst.is_by_gps()) return is_small ? Support::supported : Support::undecided;
   }
@@ -359,12 +362,13 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
   if (comparison.models.size() > 1)
     which = by_gps ? "An rms by GPS does not rank models. " : best->name + " has the smallest rms. ";
   const ModelComparison& worst = worst_by_noise(comparison, *best);
+  const auto ratio_of = [](const ModelComparison& each) {
+    return fmt::format("{:.1f} times the noise by {}", each.noise_ratio(), each.reference);
+  };
   const std::string ratio =
-      comparison.further.empty() || worst.is_by_gps() || std::isnan(worst.all.rms_over_noise())
-          ? ""
-          : fmt::format("{:.1f} times the noise by {}", worst.all.rms_over_noise(), worst.reference);
+      comparison.further.empty() || std::isnan(worst.noise_ratio()) ? "" : ratio_of(worst);
   const LevelByGps* const level = level_of(result.levels, best->name);
-  const bool is_determined = level != nullptr && level->standard_error < max_level_error;
+  const bool is_determined = level != nullptr && level->is_determined();
   const std::string correction =
       is_determined ? "needs a mean correction of " + correction_text(*level) : std::string();
   if (support(*best) == Support::supported) {
@@ -394,10 +398,15 @@ std::string next_step(const ComparisonWithGps& result, const std::vector<Compare
   }
   if (!(best->all.rms > 0.0))
     return fmt::format("The residual of {} is zero and tests nothing; give another --reference", best->name);
-  if (!is_close_to_noise(worst) && !ratio.empty()) which += fmt::format("The rms is {}. ", ratio);
+  const bool is_beyond_refit =
+      &worst != &*best && !is_close_to_noise(worst) && !can_refit(*compared, worst.reference);
+  if (is_beyond_refit && !is_close_to_noise(*best) && !std::isnan(best->noise_ratio()))
+    which += fmt::format("The rms is {}, and {}, which a refit does not change. ", ratio_of(*best), ratio);
+  else if (!is_close_to_noise(worst) && !ratio.empty())
+    which += fmt::format("The rms is {}. ", ratio);
   const std::string arguments =
       fmt::format("{} -m {}", advised_command_line(options.comparison), model_argument(model));
-  if (is_close_to_noise(*best) && !is_close_to_noise(worst) && !can_refit(*compared, worst.reference)) {
+  if (is_beyond_refit && is_close_to_noise(*best)) {
     return fmt::format("{}A refit does not change it. To find the error: {} diagnose {}", which, program(),
                        arguments);
   }
@@ -499,7 +508,7 @@ void add_notes_on_gps(const ChosenReferences& references, bool separates_atmosph
     if (model.reference == "height" && model.all.bias_error > model.all.rms)
       largest = std::max(largest, model.all.bias_error);
   }
-  if (largest >= max_level_error) {
+  if (!LevelByGps{0.0, largest}.is_determined()) {
     comparison.notes.emplace_back(
         fmt::format("heights do not determine the level (standard error {:.2f} hPa): the bias by height is a "
                     "mean residual, not an error of delta-p",
@@ -510,16 +519,21 @@ void add_notes_on_gps(const ChosenReferences& references, bool separates_atmosph
   }
 }
 
-/// First lines: the mean correction of each model, and the sign of the following values.
-void print_levels(const ComparisonWithGps& result) {
-  for (const auto& [name, level] : result.levels) {
-    if (level.standard_error < max_level_error)
-      say("{}: by GPS delta-p needs a mean correction of {}\n", name, correction_text(level));
-    else
-      say("{}: GPS does not determine the mean delta-p error on these flights; it requires circles or "
-          "reverse headings with --reference wind\n",
-          name);
+/// The mean correction of each model.
+std::vector<std::string> level_texts(const Levels& levels) {
+  std::vector<std::string> texts;
+  for (const auto& [name, level] : levels) {
+    texts.push_back(name + (level.is_determined()
+                                ? ": by GPS delta-p needs a mean correction of " + correction_text(level)
+                                : ": GPS does not determine the mean delta-p error on these flights; it "
+                                  "requires circles or reverse headings with --reference wind"));
   }
+  return texts;
+}
+
+/// First lines: the mean corrections, and the sign of the following values.
+void print_levels(const ComparisonWithGps& result) {
+  for (const std::string& text : level_texts(result.levels)) say("{}\n", text);
   if (!result.levels.empty())
     say("A positive correction, or GPS bias by wind: delta-p of the model is too small.\n");
 }
@@ -566,10 +580,14 @@ void run(const CompareArguments& options) {
   OutputTransaction together;
   for (std::size_t i = 0; i < residuals.size(); ++i)
     write_residuals(comparison, i, flights[i], residuals[i], history_of(options));
-  if (!options.common.report.empty())
-    write_report_of_run(comparison_report(comparison),
+  if (!options.common.report.empty()) {
+    Report report = comparison_report(comparison);
+    const std::vector<std::string> levels = level_texts(result.levels);
+    report.summary.insert(report.summary.begin(), levels.begin(), levels.end());
+    write_report_of_run(std::move(report),
                         {options.models, options.comparison.flights, {}, next_step(result, models, options)},
                         options.common);
+  }
   if (!options.table.empty()) write_flight_table(comparison, options.table);
   json.write(result);
   together.appear();

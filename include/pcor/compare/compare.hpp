@@ -84,6 +84,8 @@ struct ModelComparison {
   /// Whether the reference is wind or height. The residual contains variations of the atmosphere and, within
   /// a minute, errors of the model, and so does its noise: an upper limit of that of the sensors.
   bool is_by_gps() const { return reference == "wind" || reference == "height"; }
+  /// Rms residual divided by the noise of the sensors; NaN if this noise is unknown, as by GPS.
+  double noise_ratio() const;
 };
 
 template <class Field>

@@ -316,8 +316,10 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
 
 /// Mean error of delta-p of a model, hPa.
 struct LevelByGps {
-  double missing = 0.0;         ///< correction of delta-p
-  double standard_error = 0.0;  ///< above 1 hPa the level is not determined
+  double missing = 0.0;  ///< correction of delta-p
+  double standard_error = 0.0;
+
+  bool is_determined() const { return standard_error < 1.0; }  // hPa
 };
 
 /// Constant error of the model's delta-p according to GPS, by the same likelihood as `refit`: static-constant
