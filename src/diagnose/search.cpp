@@ -470,8 +470,8 @@ void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
   }
 }
 
-void Search::drop_errors_of_linearity(const std::vector<std::size_t>& references,
-                                      std::vector<std::size_t>& chosen) const {
+std::vector<std::size_t>::iterator Search::first_error_of_linearity(
+    const std::vector<std::size_t>& references, std::vector<std::size_t>& chosen) const {
   const Eigen::Index count =
       references.empty() ? 1 : as_index(*std::max_element(references.begin(), references.end())) + 1;
   std::vector<Eigen::VectorXd> squares;  // of each effect, against each reference
@@ -483,14 +483,12 @@ void Search::drop_errors_of_linearity(const std::vector<std::size_t>& references
       return of_flight;
     }));
   }
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const bool is_small = std::any_of(squares.begin(), squares.end(), [&](const Eigen::VectorXd& strong) {
-      return linear_to * linear_to * strong.dot(squares[i]) > squares[i].sum() * squares[i].sum();
+  const auto weak = std::find_if(squares.begin(), squares.end(), [&squares](const Eigen::VectorXd& each) {
+    return std::any_of(squares.begin(), squares.end(), [&each](const Eigen::VectorXd& strong) {
+      return linear_to * linear_to * strong.dot(each) > each.sum() * each.sum();
     });
-    if (!is_small) kept.push_back(chosen[i]);
-  }
-  chosen = kept;
+  });
+  return chosen.begin() + (weak - squares.begin());
 }
 
 SearchResult Search::run(const SearchOptions& options) const {
@@ -538,8 +536,13 @@ SearchResult Search::run(const SearchOptions& options) const {
       return !now.possible || !(now.equivalent > result.threshold);
     });
   };
-  for (auto weak = first_weak(); weak != chosen.end(); weak = first_weak()) chosen.erase(weak);
-  drop_errors_of_linearity(options.references, chosen);
+  // One at a time: without it, similar effects explain more.
+  while (true) {
+    auto weak = first_weak();
+    if (weak == chosen.end()) weak = first_error_of_linearity(options.references, chosen);
+    if (weak == chosen.end()) break;
+    chosen.erase(weak);
+  }
   const std::vector<std::size_t> set = chosen;
   std::sort(chosen.begin(), chosen.end(),
             [&](std::size_t a, std::size_t b) { return score(a, set).chi2 > score(b, set).chi2; });

@@ -162,10 +162,11 @@ class Search {
   void prefer_usual_shapes(std::vector<std::size_t>& chosen) const;
   /// Exchanges, joins and drops effects while the set becomes more likely.
   void improve(std::vector<std::size_t>& chosen, double price) const;
-  /// Drops effects that are smaller than 2 % of a stronger one in the references that see them: the search is
-  /// linear about the model, and finds such an effect after the stronger one is in the model.
-  void drop_errors_of_linearity(const std::vector<std::size_t>& references,
-                                std::vector<std::size_t>& chosen) const;
+  /// First effect that is smaller than 2 % of a stronger one in the references that see it; the end if there
+  /// is no such effect. The search is linear about the model, and finds it after the stronger one is in the
+  /// model.
+  std::vector<std::size_t>::iterator first_error_of_linearity(const std::vector<std::size_t>& references,
+                                                              std::vector<std::size_t>& chosen) const;
   double log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const;
   Eigen::VectorXd precision_of(std::size_t group, double times) const;
   bool is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const;

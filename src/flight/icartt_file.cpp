@@ -272,10 +272,16 @@ class IcarttFile::Reader {
         const bool is_last = &variable == &file_.variables_.back();
         const bool is_empty = end == at;
         while (*end == ' ' || *end == '\t' || *end == '\r') ++end;
-        const bool ends = is_last ? trimmed(*end == ',' ? end + 1 : end).empty() : *end == ',';
-        if (is_empty || !ends)
-          fail(fmt::format("{} numbers with commas between them are required here; the line has {} fields",
-                           file_.variables_.size(), fields_of(line).size()));
+        const bool ends = is_last
+                              ? std::string_view(end).find_first_not_of(", \t\r") == std::string_view::npos
+                              : *end == ',';
+        if (is_empty || !ends) {
+          const std::size_t fields = fields_of(line).size();
+          fail(fmt::format(
+              "{} numbers with commas between them are required here; {}", file_.variables_.size(),
+              fields == file_.variables_.size() ? fmt::format("that of {} is not a number", variable.name)
+                                                : fmt::format("the line has {} fields", fields)));
+        }
         const bool is_missing =
             std::find(variable.missing.begin(), variable.missing.end(), value) != variable.missing.end();
         variable.values.push_back(is_missing ? nan : value * variable.scale);

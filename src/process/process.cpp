@@ -192,7 +192,9 @@ class Processing {
   void note_no_flight(const std::string& variable, const std::vector<double>& dynamic_pressure) {
     double maximum = nan;
     for (const double value : dynamic_pressure) maximum = std::fmax(maximum, value);
-    did_not_fly_ = maximum < summary_.flying_dynamic_pressure;
+    // A unit that the model states is the more likely cause.
+    did_not_fly_ =
+        maximum < summary_.flying_dynamic_pressure && file_.units.count(Quantity::dynamic_pressure) == 0;
     if (!did_not_fly_) return;
     summary_.notes.push_back(warning_note(fmt::format(
         "the aircraft did not fly, or the unit of {} is wrong: its maximum is {:.1f} hPa, less than "

@@ -113,14 +113,14 @@ std::string nearest_form(const std::string& text) {
   if (text == "laser") return "lams";
   const bool has_form = contains(text, ":");
   if (!has_form && is_pair(text)) return "total:" + text;
-  // A model by its file or its name, like c130-psfrd-2003.
-  if (!has_form && (contains(text, ".toml") || contains(text, "-"))) return "static:" + text;
+  if (!has_form && contains(text, ".toml")) return "static:" + text;
   std::vector<std::string> names;
   for (const Form& each : forms) names.emplace_back(each.form);
   const std::vector<std::string> meant = suggest(text.substr(0, text.find(':')), names);
   for (const Form& each : forms) {
     if (!meant.empty() && each.form == meant.front()) return usage_of(each);
   }
+  if (!has_form && contains(text, "-")) return "static:" + text;  // a model like c130-psfrd-2003
   if (!has_form &&
       std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isupper(c) != 0; }))
     return "pressure:" + text;

@@ -24,7 +24,6 @@ constexpr double min_over_median = 5.0;      // ratio to the median, if the seri
 constexpr double min_over_90th = 10.0;       // ratio to the 90th percentile, otherwise
 constexpr double noisy = 3.0;                // second difference, in steps of resolution
 constexpr std::size_t noise_window = 300;    // samples on either side
-constexpr std::size_t fast_window = 50;      // likewise, of samples within a record
 constexpr std::size_t max_listed = 3;        // segments in a text
 
 /// Consecutive equal values, with missing ones between them.
@@ -57,34 +56,23 @@ double smallest_step(const std::vector<double>& values) {
   return resolution;
 }
 
-/// How the noise around a run is judged.
-struct NoiseRule {
-  std::size_t window;  ///< samples on either side
-  bool is_required;    ///< only runs within noise are frozen, where three equal values count as no noise
-};
-
-/// Whether the noise from sample to sample exceeds the resolution. If not required, equal values do not
-/// count, and it is true if there are too few samples.
-bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t end, double resolution,
-              bool is_required) {
+/// Whether the noise from sample to sample exceeds the resolution; true if there are too few samples.
+bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t end, double resolution) {
   std::vector<double> bends;
   for (std::size_t i = first + 2; i < end; ++i) {
     const double before = values[i - 1] - values[i - 2];
     const double now = values[i] - values[i - 1];
     const double bend = std::abs(now - before);
-    if ((is_required || before != 0.0 || now != 0.0) && !std::isnan(bend)) bends.push_back(bend);
+    if ((before != 0.0 || now != 0.0) && !std::isnan(bend)) bends.push_back(bend);
   }
-  return (bends.empty() && !is_required) || median(std::move(bends)) >= noisy * resolution;
+  return bends.empty() || median(std::move(bends)) >= noisy * resolution;
 }
 
 /// True if the series is noisy before and after the run.
-bool is_noisy_around(const std::vector<double>& values, const Segment& run, double resolution,
-                     const NoiseRule& rule) {
+bool is_noisy_around(const std::vector<double>& values, const Segment& run, double resolution) {
   const std::size_t after = run.first + run.count;
-  const std::size_t before = run.first - std::min(run.first, rule.window);
-  const std::size_t end = std::min(after + rule.window, values.size());
-  return is_noisy(values, before, run.first, resolution, rule.is_required) &&
-         is_noisy(values, after, end, resolution, rule.is_required);
+  return is_noisy(values, run.first - std::min(run.first, noise_window), run.first, resolution) &&
+         is_noisy(values, after, std::min(after + noise_window, values.size()), resolution);
 }
 
 /// Quantile of run lengths, each run weighted by its number of samples. @param part 0 to 1
@@ -118,27 +106,9 @@ double mean_length_near(const std::vector<Run>& runs, std::size_t run) {
   return sum / static_cast<double>(lengths.size());
 }
 
-/// Runs that are much longer than expected.
-std::vector<Segment> long_runs(const std::vector<double>& values, const std::vector<Run>& runs,
-                               const NoiseRule& rule) {
-  if (runs.size() < min_runs) return {};
-  const auto is_long = [](const Run& run) { return run.length >= min_samples; };
-  if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
-  std::vector<Segment> frozen;
-  const double resolution = smallest_step(values);
-  const double median_length = length_quantile(runs, 0.5);
-  const double length_90th = length_quantile(runs, 0.9);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Segment& segment = runs[i].segment;
-    if (!is_long(runs[i])) continue;
-    const bool has_noise = is_noisy_around(values, segment, resolution, rule);
-    const auto length = static_cast<double>(runs[i].length);
-    const double minimum = has_noise ? min_over_median * median_length : min_over_90th * length_90th;
-    if ((has_noise || !rule.is_required) && length >= minimum &&
-        length >= min_over_near * mean_length_near(runs, i))
-      frozen.push_back(segment);
-  }
-  return frozen;
+/// True for the sensors that a sample loop watches.
+bool is_watched(Quantity quantity) {
+  return std::find(always_varying.begin(), always_varying.end(), quantity) != always_varying.end();
 }
 
 }  // namespace
@@ -146,22 +116,35 @@ std::vector<Segment> long_runs(const std::vector<double>& values, const std::vec
 std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies) {
   const std::vector<Run> runs = runs_of(values, used);
+  std::vector<Segment> frozen;
   const auto same = [&](const Run& run) {
     return values[run.segment.first] == values[runs.front().segment.first];
   };
-  if (!always_varies || !std::all_of(runs.begin(), runs.end(), same))
-    return long_runs(values, runs, {noise_window, false});
-  std::vector<Segment> frozen;
-  for (const Run& run : runs) frozen.push_back(run.segment);
+  if (always_varies && std::all_of(runs.begin(), runs.end(), same)) {
+    for (const Run& run : runs) frozen.push_back(run.segment);
+    return frozen;
+  }
+  if (runs.size() < min_runs) return {};
+  const auto is_long = [](const Run& run) { return run.length >= min_samples; };
+  if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
+  const double resolution = smallest_step(values);
+  const double median_length = length_quantile(runs, 0.5);
+  const double length_90th = length_quantile(runs, 0.9);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Segment& segment = runs[i].segment;
+    if (!is_long(runs[i])) continue;
+    const auto length = static_cast<double>(runs[i].length);
+    const double minimum = is_noisy_around(values, segment, resolution) ? min_over_median * median_length
+                                                                        : min_over_90th * length_90th;
+    if (length >= minimum && length >= min_over_near * mean_length_near(runs, i)) frozen.push_back(segment);
+  }
   return frozen;
 }
 
 std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& values,
                                  const std::vector<bool>& flying) {
   constexpr std::ptrdiff_t min_flown = 300;
-  const bool always_varies =
-      quantity == Quantity::corrected_static_pressure ||
-      std::find(always_varying.begin(), always_varying.end(), quantity) != always_varying.end();
+  const bool always_varies = is_watched(quantity) || quantity == Quantity::corrected_static_pressure;
   std::vector<Segment> frozen = find_frozen(
       values, flying, always_varies && std::count(flying.begin(), flying.end(), true) >= min_flown);
   if (quantity == Quantity::liquid_water) {
@@ -175,19 +158,30 @@ std::vector<Segment> find_frozen(const Flight& flight, const std::string& variab
                                  const std::vector<double>& means, const std::vector<bool>& flying) {
   std::vector<Segment> frozen = find_frozen(quantity, means, flying);
   const int rate = flight.variable(variable).rate;
-  if (rate == 1 || quantity == Quantity::liquid_water) return frozen;
-  const auto in_record = static_cast<std::size_t>(rate);
-  const std::vector<double> values = read_values(flight, variable, {}, rate).values;
-  std::vector<bool> used;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    used.push_back(flying[i / in_record] && !is_missing(means[i / in_record]));
-  for (const Segment& span : long_runs(values, runs_of(values, used), {fast_window, true})) {
-    const std::size_t first = span.first / in_record;
-    frozen.push_back({first, (span.first + span.count - 1) / in_record + 1 - first});
-  }
+  if (rate == 1 || !is_watched(quantity)) return frozen;
   std::vector<bool> marked(means.size());
-  for (const Segment& span : frozen)
-    std::fill_n(marked.begin() + static_cast<std::ptrdiff_t>(span.first), span.count, true);
+  const auto mark = [&marked](std::size_t first, std::size_t end) {
+    std::fill(marked.begin() + static_cast<std::ptrdiff_t>(first),
+              marked.begin() + static_cast<std::ptrdiff_t>(end), true);
+  };
+  for (const Segment& span : frozen) mark(span.first, span.first + span.count);
+  const std::vector<double> values = read_values(flight, variable, {}, rate).values;
+  SteadyValue watch(rate, infinity);
+  double last = nan;
+  std::size_t first = 0;  // record of the first sample with this value that is not marked
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t record = i / static_cast<std::size_t>(rate);
+    if (!flying[record]) {
+      watch.end();
+      last = nan;
+    } else if (!std::isnan(values[i])) {
+      if (values[i] != last) first = record;
+      last = values[i];
+      if (!watch(last)) continue;
+      mark(first, record + 1);
+      first = record;
+    }
+  }
   frozen.clear();
   for (const Run& run : runs_of(std::vector<double>(means.size()), marked)) frozen.push_back(run.segment);
   return frozen;
@@ -208,9 +202,10 @@ std::string frozen_text(const std::string& variable, Quantity quantity, const st
     if (spans.size() == max_listed) break;
     const auto first = values.begin() + static_cast<std::ptrdiff_t>(span.first);
     const double value = median({first, first + static_cast<std::ptrdiff_t>(span.count)});
-    spans.push_back(fmt::format("at {:.6g}{} from {} to {} UTC ({} records)", value,
+    spans.push_back(fmt::format("at {:.6g}{} from {} to {} UTC ({} record{})", value,
                                 unit.empty() || unit == "1" ? "" : " " + unit, utc_text(time[span.first]),
-                                utc_text(time[span.first + span.count - 1], "%H:%M:%S"), span.count));
+                                utc_text(time[span.first + span.count - 1], "%H:%M:%S"), span.count,
+                                span.count == 1 ? "" : "s"));
   }
   return fmt::format(
       "{} is frozen, {}{}", variable, fmt::join(spans, ", "),

@@ -31,10 +31,9 @@ std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& v
                                  const std::vector<bool>& flying);
 
 /// Segments of records in which a variable is frozen in flight, found in its means over the records and, if
-/// the flight has several samples in a record, in these: runs of 20 samples and more (0.8 s at 25 Hz) if the
-/// noise of the fifty samples before and after exceeds the resolution. A coarse or calm sensor, or one that
-/// repeats its values, is thus found by its means alone. A record with any frozen sample belongs to a
-/// segment.
+/// a sample loop watches the quantity and a record has several samples, in these as in the loop
+/// (`SteadyValue`): after five seconds at one value if its noise is known and exceeds the resolution. A
+/// record with any frozen sample belongs to a segment.
 /// @param means of the records, NaN where missing
 std::vector<Segment> find_frozen(const Flight& flight, const std::string& variable, Quantity quantity,
                                  const std::vector<double>& means, const std::vector<bool>& flying);

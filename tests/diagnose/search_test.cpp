@@ -14,6 +14,7 @@
 using namespace pcor::internal;
 
 using pcor::Bounds;
+using testing::AnyOf;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
@@ -169,6 +170,14 @@ TEST(Search, AnEffectWithinTheErrorOfTheLinearSearchIsFoundAfterTheStrongOne) {
   EXPECT_THAT(run(problem).chosen, ElementsAre(4));
   problem.residual -= 20.0 * problem.candidate(4);
   EXPECT_THAT(run(problem).chosen, ElementsAre(7));
+}
+
+// Two similar effects of together 100 standard errors, each small beside the other.
+TEST(Search, OneOfTwoSimilarEffectsStaysBesideAStrongOne) {
+  Problem problem(600, 20, 3);
+  problem.candidate(8) = 0.98 * problem.candidate(7) + 0.2 * problem.candidate(8);
+  problem.residual += 20.0 * problem.candidate(4) + problem.candidate(7) + problem.candidate(8);
+  EXPECT_THAT(run(problem).chosen, ElementsAre(4, AnyOf(7, 8)));
 }
 
 // The same sizes, each effect seen by one of two references.

@@ -27,15 +27,21 @@ inline constexpr std::array always_varying{Quantity::static_pressure,
 /// Detects a constant sensor, sample by sample.
 ///
 /// The permitted duration of a constant value follows from the resolution, the smallest step observed. If the
-/// noise is at least three such steps, the sensor is frozen after `fewest` samples of one value, or, if more,
-/// 20 times its usual time at one value, or five times that of a typical sample. Otherwise, and with fewer
-/// than 50 known values, it is frozen after `longest`.
+/// noise is at least three such steps, the sensor is frozen after 20 samples and 5 s of one value, or, if
+/// more, 20 times its usual time at one value, or five times that of a typical sample. Otherwise, and with
+/// fewer than 50 known values, it is frozen after `longest`. A run of one value has the weight of its
+/// samples.
 class SteadyValue {
  public:
-  /// @param fewest samples that any sensor may have one value @param longest those of a coarse sensor
-  SteadyValue(std::size_t fewest, std::size_t longest) : fewest_(fewest), longest_(longest) {}
+  /// @param rate samples in a second
+  /// @param longest time that a coarse sensor may have one value, s; infinite: its noise must be known
+  SteadyValue(double rate, double longest)
+      : rate_(rate),
+        longest_time_(longest),
+        fewest_(static_cast<std::size_t>(std::max(5.0 * rate, 20.0))),
+        longest_(static_cast<std::size_t>(std::min(std::max(longest * rate, 20.0), 1e9))) {}
 
-  void reset() noexcept { *this = SteadyValue(fewest_, longest_); }
+  void reset() noexcept { *this = SteadyValue(rate_, longest_time_); }
 
   /// Ends the run of one value, as on the ground.
   void end() noexcept {
@@ -90,8 +96,10 @@ class SteadyValue {
     return std::min(longest_, static_cast<std::size_t>(std::max(usual, static_cast<double>(fewest_))));
   }
 
-  std::size_t fewest_;
-  std::size_t longest_;
+  double rate_;
+  double longest_time_;                    // s
+  std::size_t fewest_;                     // samples
+  std::size_t longest_;                    // samples
   std::array<std::size_t, 64> lengths_{};  // lengths of the last runs of one value, in samples
   std::size_t runs_ = 0;
   std::size_t limit_ = 0;
@@ -109,11 +117,8 @@ class FrozenWatch {
  public:
   /// @param rate samples in a second
   FrozenWatch(const Chain& chain, double rate) {
-    const auto samples = [rate](double seconds) {
-      return static_cast<std::size_t>(std::min(std::max(seconds * rate, 20.0), 1e9));
-    };
     for (const Quantity quantity : always_varying) {
-      if (chain.recorded(quantity)) sensors_.push_back({quantity, {samples(5.0), samples(300.0)}});
+      if (chain.recorded(quantity)) sensors_.push_back({quantity, {rate, 300.0}});
     }
   }
 
