@@ -92,7 +92,7 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
   return all;
 }
 
-/// @throws Error that names the laser of a flight, if the model names none
+/// @throws Error that names the laser of a flight, if the model does not name it
 void require_laser(const ModelDefinition& model, const FlightSet& flights) {
   if (model.variables.count(Quantity::lams_airspeed) != 0 || flights.empty() || flights.path(0).empty())
     return;

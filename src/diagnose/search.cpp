@@ -474,7 +474,7 @@ std::vector<std::size_t>::iterator Search::first_error_of_linearity(
     const std::vector<std::size_t>& references, std::vector<std::size_t>& chosen) const {
   const Eigen::Index count =
       references.empty() ? 1 : as_index(*std::max_element(references.begin(), references.end())) + 1;
-  std::vector<Eigen::VectorXd> squares;  // of each effect, against each reference
+  std::vector<Eigen::VectorXd> squares;  // sums of each effect against each reference
   for (const std::size_t group : chosen) {
     const std::vector<Eigen::VectorXd> rows = leftover_rows(group, chosen);
     squares.push_back(scores_->share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) {

@@ -279,7 +279,7 @@ class IcarttFile::Reader {
           const std::size_t fields = fields_of(line).size();
           fail(fmt::format(
               "{} numbers with commas between them are required here; {}", file_.variables_.size(),
-              fields == file_.variables_.size() ? fmt::format("that of {} is not a number", variable.name)
+              fields == file_.variables_.size() ? fmt::format("{} has no number", variable.name)
                                                 : fmt::format("the line has {} fields", fields)));
         }
         const bool is_missing =

@@ -238,7 +238,7 @@ class EffectReader final : TomlReader {
         fail(*parameters.node, "{} is a parameter of effect {} and the role of {}; rename the parameter",
              quote(role_name), quote(effect.id), name);
       }
-      // A letter after a digit or a point belongs to a number, as in 1.E5.
+      // A character after a digit or a point belongs to a number, as in 1.E5.
       const std::regex word("(^|[^A-Za-z0-9_.])" + name + "(?![A-Za-z0-9_])");
       effect.formula = std::regex_replace(effect.formula, word, "$1" + role_name);
     }

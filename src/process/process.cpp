@@ -250,8 +250,8 @@ class Processing {
     return times_of(segments, time);
   }
 
-  /// Warns of fewer than 1 % corrected samples, with the most frequent reason. @throws Error if there are
-  /// none in a flight that flew: the output is not written
+  /// Warns of fewer than 1 % corrected samples, with the most frequent reason. @throws Error if a
+  /// flight that flew has no corrected sample; the output is then not written
   void note_uncorrected() {
     constexpr std::size_t few = 100;
     if (few * summary_.corrected >= summary_.samples) return;

@@ -486,7 +486,7 @@ TEST(LoopOrder, WriterOfAQuantityWithARateIsRefused) {
   EXPECT_THAT(error, HasSubstr("dynamic_pressure"));
 }
 
-// The rate of the airspeed depends on what the airspeed of the model depends on.
+// The rate of the airspeed depends on the inputs of the model's airspeed.
 TEST(LoopOrder, WriterOfAnInputOfTheAirspeedWithARateIsRefused) {
   Model model = c130();
   model.effects.push_back({"clock-skew", {2.0}});

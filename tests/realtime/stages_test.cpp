@@ -119,20 +119,27 @@ TEST(Stages, ReadAndWriteOnlyDeclaredQuantities) {
   }
 }
 
+/// Chain with flow angles of the radome, humidity by a mirror and a recovery temperature.
+std::optional<Chain> chain_of_radome(Model model) {
+  model.attack_radome = {4.9, 13.4, 6.1};
+  model.sideslip_radome = {0.1, 11.8, 0.0};
+  BindingError error;
+  std::optional<Chain> chain =
+      Chain::build(model,
+                   roles_without({Quantity::mach, Quantity::attack, Quantity::sideslip,
+                                  Quantity::vapor_pressure, Quantity::ambient_temperature}),
+                   &error);
+  EXPECT_TRUE(chain) << error.message();
+  return chain;
+}
+
 // A quantity depends only on its declared sources.
 TEST(Stages, DerivedQuantitiesDependOnDeclaredSourcesOnly) {
   Model model;
   model.effects = {{"static-alpha", {0.02}}, {"static-qp", {0.03}}, {"static-beta-odd", {0.01}},
                    {"static-mach2", {0.01}}, {"clock-skew", {0.1}}, {"humidity-error", {0.1}}};
-  model.attack_radome = {4.9, 13.4, 6.1};
-  model.sideslip_radome = {0.1, 11.8, 0.0};
-  BindingError error;
-  const std::optional<Chain> chain =
-      Chain::build(model,
-                   roles_without({Quantity::mach, Quantity::attack, Quantity::sideslip,
-                                  Quantity::vapor_pressure, Quantity::ambient_temperature}),
-                   &error);
-  ASSERT_TRUE(chain) << error.message();
+  const std::optional<Chain> chain = chain_of_radome(std::move(model));
+  ASSERT_TRUE(chain);
   State<double> state;
   for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
   for (const Rate& each : rates) state[each.rate] = 0.01;
@@ -158,15 +165,8 @@ TEST(Stages, RateOfTheAirspeedDependsOnDeclaredSourcesOnly) {
   Model model;
   model.effects = {{"static-alpha", {0.02}},      {"static-beta-odd", {0.01}}, {"load-factor", {0.1}},
                    {"psfd-thermal", {0.01, 0.0}}, {"humidity-error", {0.1}},   {"clock-skew", {0.1}}};
-  model.attack_radome = {4.9, 13.4, 6.1};
-  model.sideslip_radome = {0.1, 11.8, 0.0};
-  BindingError error;
-  const std::optional<Chain> chain =
-      Chain::build(model,
-                   roles_without({Quantity::mach, Quantity::attack, Quantity::sideslip,
-                                  Quantity::vapor_pressure, Quantity::ambient_temperature}),
-                   &error);
-  ASSERT_TRUE(chain) << error.message();
+  const std::optional<Chain> chain = chain_of_radome(std::move(model));
+  ASSERT_TRUE(chain);
   State<double> state;
   for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
   const auto airspeed = [&](const State<double>& of) {

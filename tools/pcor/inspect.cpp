@@ -61,7 +61,8 @@ const ModelCandidate* law_of_next(const InspectArguments& options, const Inspect
   return options.model.empty() && fits != flight.laws.end() ? &*fits : nullptr;
 }
 
-/// What makes the published model read the laser of the flight; empty without a laser, or if it does already.
+/// Step by which the published model reads the laser of the flight; empty without a laser, or if it does
+/// already.
 std::string use_of_laser(const InspectArguments& options, const Inspection& flight) {
   const ModelCandidate* const law = law_of_next(options, flight);
   const bool has_laser =
