@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <pcor/base/utc.hpp>
 #include <pcor/realtime/frozen_watch.hpp>
@@ -17,8 +18,10 @@ namespace {
 
 constexpr std::size_t min_samples = 20;
 constexpr std::size_t min_runs = 50;         // minimum number of runs to estimate their usual length
+constexpr std::size_t min_flown = 300;       // samples of a flight, or of a run, if few runs are known
 constexpr std::size_t neighbours = 20;       // runs on either side
 constexpr std::size_t longest_excluded = 2;  // number of neighbours
+constexpr std::ptrdiff_t max_similar = 10;   // faults of half the length and more in a flight
 constexpr double min_over_near = 20.0;       // ratio of a frozen run to the mean length of its neighbours
 constexpr double min_over_median = 5.0;      // ratio to the median, if the series is noisy around the run
 constexpr double min_over_90th = 10.0;       // ratio to the 90th percentile, otherwise
@@ -75,21 +78,27 @@ bool is_noisy_around(const std::vector<double>& values, const Segment& run, doub
          is_noisy(values, after, std::min(after + noise_window, values.size()), resolution);
 }
 
-/// Quantile of run lengths, each run weighted by its number of samples. @param part 0 to 1
-double length_quantile(const std::vector<Run>& runs, double part) {
-  std::vector<std::size_t> lengths;
-  std::size_t samples = 0;
-  for (const Run& run : runs) {
-    lengths.push_back(run.length);
-    samples += run.length;
-  }
-  std::sort(lengths.begin(), lengths.end());
+/// Quantile of the lengths below a limit, each weighted by its number of samples; 0 without such lengths.
+/// @param sorted lengths of runs @param part 0 to 1
+double length_quantile(const std::vector<std::size_t>& sorted, std::size_t limit, double part) {
+  const auto end = std::lower_bound(sorted.begin(), sorted.end(), limit);
+  const auto samples = static_cast<double>(std::accumulate(sorted.begin(), end, std::size_t{0}));
   double within = 0.0;
-  for (const std::size_t length : lengths) {
-    within += static_cast<double>(length);
-    if (within >= part * static_cast<double>(samples)) return static_cast<double>(length);
+  for (auto each = sorted.begin(); each != end; ++each) {
+    within += static_cast<double>(*each);
+    if (within >= part * samples) return static_cast<double>(*each);
   }
   return 0.0;
+}
+
+/// Extends a run to adjacent samples of the same value that are not used, as on the ground.
+Segment with_unused(Segment run, const std::vector<double>& values) {
+  const double value = values[run.first];
+  std::size_t end = run.first + run.count;
+  while (run.first > 0 && values[run.first - 1] == value) --run.first;
+  while (end < values.size() && values[end] == value) ++end;
+  run.count = end - run.first;
+  return run;
 }
 
 /// Mean length of the neighbouring runs, without the longest ones.
@@ -104,6 +113,15 @@ double mean_length_near(const std::vector<Run>& runs, std::size_t run) {
   double sum = 0.0;
   for (const std::size_t length : lengths) sum += static_cast<double>(length);
   return sum / static_cast<double>(lengths.size());
+}
+
+/// Segments in order. Runs of the same value with only ground samples between them are one segment.
+std::vector<Segment> each_once(std::vector<Segment> segments) {
+  std::sort(segments.begin(), segments.end(),
+            [](const Segment& a, const Segment& b) { return a.first < b.first; });
+  const auto are_same = [](const Segment& a, const Segment& b) { return a.first == b.first; };
+  segments.erase(std::unique(segments.begin(), segments.end(), are_same), segments.end());
+  return segments;
 }
 
 /// True for the sensors that a sample loop watches.
@@ -121,32 +139,52 @@ std::vector<Segment> find_frozen(const std::vector<double>& values, const std::v
     return values[run.segment.first] == values[runs.front().segment.first];
   };
   if (always_varies && std::all_of(runs.begin(), runs.end(), same)) {
-    for (const Run& run : runs) frozen.push_back(run.segment);
-    return frozen;
+    for (const Run& run : runs) frozen.push_back(with_unused(run.segment, values));
+    return each_once(std::move(frozen));
   }
-  if (runs.size() < min_runs) return {};
-  const auto is_long = [](const Run& run) { return run.length >= min_samples; };
-  if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
+  if (runs.size() < 2) return {};
+  // Few runs do not show the usual length; a sensor that always varies is frozen after minutes.
+  const bool are_few = runs.size() < min_runs;
+  if (are_few && !always_varies) return {};
+  const std::size_t shortest = are_few ? min_flown : min_samples;
   const double resolution = smallest_step(values);
-  const double median_length = length_quantile(runs, 0.5);
-  const double length_90th = length_quantile(runs, 0.9);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const Segment& segment = runs[i].segment;
-    if (!is_long(runs[i])) continue;
-    const auto length = static_cast<double>(runs[i].length);
-    const double minimum = is_noisy_around(values, segment, resolution) ? min_over_median * median_length
-                                                                        : min_over_90th * length_90th;
-    if (length >= minimum && length >= min_over_near * mean_length_near(runs, i)) frozen.push_back(segment);
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(runs[a].length, a) < std::pair(runs[b].length, b);
+  });
+  std::vector<std::size_t> all;
+  for (const std::size_t i : order) all.push_back(runs[i].length);
+  std::vector<std::size_t> usual;  // runs that are not frozen
+  for (const std::size_t i : order) {
+    const std::size_t length = runs[i].length;
+    const auto is_frozen = [&] {
+      if (length < shortest) return false;
+      const bool is_noisy = is_noisy_around(values, runs[i].segment, resolution);
+      const auto similar = all.end() - std::lower_bound(all.begin(), all.end(), length / 2);
+      if (always_varies && !is_noisy && similar > max_similar) return false;  // calm air
+      const double factor = is_noisy ? min_over_median : min_over_90th;
+      const double part = is_noisy ? 0.5 : 0.9;
+      // Flaps stay extended several times; several long runs of a sensor that always varies are faults.
+      const double expected = always_varies ? length_quantile(usual, length / 2, part)
+                                            : length_quantile(all, all.back() + 1, part);
+      return static_cast<double>(length) >=
+             std::max(factor * expected, min_over_near * mean_length_near(runs, i));
+    };
+    if (is_frozen())
+      frozen.push_back(with_unused(runs[i].segment, values));
+    else
+      usual.push_back(length);
   }
-  return frozen;
+  return each_once(std::move(frozen));
 }
 
 std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& values,
                                  const std::vector<bool>& flying) {
-  constexpr std::ptrdiff_t min_flown = 300;
   const bool always_varies = is_watched(quantity) || quantity == Quantity::corrected_static_pressure;
-  std::vector<Segment> frozen = find_frozen(
-      values, flying, always_varies && std::count(flying.begin(), flying.end(), true) >= min_flown);
+  std::vector<Segment> frozen = find_frozen(values, flying,
+                                            always_varies && std::count(flying.begin(), flying.end(), true) >=
+                                                                 static_cast<std::ptrdiff_t>(min_flown));
   if (quantity == Quantity::liquid_water) {
     const auto is_zero = [&values](const Segment& span) { return values[span.first] == 0.0; };
     frozen.erase(std::remove_if(frozen.begin(), frozen.end(), is_zero), frozen.end());
@@ -157,8 +195,9 @@ std::vector<Segment> find_frozen(Quantity quantity, const std::vector<double>& v
 std::vector<Segment> find_frozen(const Flight& flight, const std::string& variable, Quantity quantity,
                                  const std::vector<double>& means, const std::vector<bool>& flying) {
   std::vector<Segment> frozen = find_frozen(quantity, means, flying);
-  const int rate = flight.variable(variable).rate;
-  if (rate == 1 || !is_watched(quantity)) return frozen;
+  // Other quantities may be computed from several variables.
+  const int rate = is_watched(quantity) ? flight.variable(variable).rate : 1;
+  if (rate == 1) return frozen;
   std::vector<bool> marked(means.size());
   const auto mark = [&marked](std::size_t first, std::size_t end) {
     std::fill(marked.begin() + static_cast<std::ptrdiff_t>(first),
@@ -208,8 +247,8 @@ std::string frozen_text(const std::string& variable, Quantity quantity, const st
                                 span.count == 1 ? "" : "s"));
   }
   return fmt::format(
-      "{} is frozen, {}{}", variable, fmt::join(spans, ", "),
-      frozen.size() > max_listed ? fmt::format(" and {} more segments", frozen.size() - max_listed) : "");
+      "{} is frozen {}{}", variable, fmt::join(spans, "; "),
+      frozen.size() > max_listed ? fmt::format("; and {} more segments", frozen.size() - max_listed) : "");
 }
 
 }  // namespace pcor::internal

@@ -11,16 +11,17 @@ namespace pcor::internal {
 
 /// Segments in which a series keeps exactly one value for much longer than expected by chance.
 ///
-/// The rest of the series defines the expected length of runs. A sensor is frozen if its value is constant
+/// The other runs of the series define the expected length. A sensor is frozen if its value is constant
 /// for at least 20 samples; for 20 times the mean run of the twenty values before and the twenty after
-/// (without the two longest); and much longer than usual in the whole flight: five times the median if the
-/// noise within five minutes before and after exceeds the resolution, otherwise ten times the 90th
-/// percentile. Hence flaps, a temperature that changes in small steps and an altitude in whole feet are not
-/// reported, and for a coarse sensor only segments shorter than a tenth of the flight are found.
+/// (without the two longest); and much longer than usual in the flight: five times the median if the noise
+/// within five minutes before and after exceeds the resolution, otherwise ten times the 90th percentile.
+/// Hence flaps, a temperature that changes in small steps and an altitude in whole feet are not reported.
 ///
 /// @param values NaN where missing, which does not end a run of one value
-/// @param used true for samples that are evaluated, as those in flight; others end a run
-/// @param always_varies one value from beginning to end is frozen, too
+/// @param used true for samples that are evaluated, as those in flight; others end a run, but belong to a
+/// frozen segment if they are adjacent and have its value
+/// @param always_varies frozen and similarly long runs, at most ten, do not count as usual; one value from
+/// beginning to end is frozen, too; a series of fewer than 50 runs is searched for runs of 300 samples
 std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies = false);
 

@@ -126,8 +126,12 @@ TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
 }
 
 TEST(SeveralReferences, ReportStatisticsOfTheFirstReference) {
-  const RefitResult alone = fit(laser_model(), {"pressure:TRUE_PS"});
-  const RefitResult both = fit(laser_model(), {"pressure:TRUE_PS", "lams"});
+  const auto fit_short = [](const std::vector<std::string>& texts) {
+    return pcor::refit({pcor::test::short_flight()}, laser_model(),
+                       pcor::read_references(texts, laser_model(), {}).used);
+  };
+  const RefitResult alone = fit_short({"pressure:TRUE_PS"});
+  const RefitResult both = fit_short({"pressure:TRUE_PS", "lams"});
   EXPECT_EQ(both.samples, alone.samples);
   EXPECT_EQ(both.masks, alone.masks);
   EXPECT_EQ(both.flights.size(), 1U);

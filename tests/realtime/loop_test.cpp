@@ -807,6 +807,25 @@ TEST(LoopFrozen, DropoutsDoNotRestartTheSearch) {
   }
 }
 
+// A packet is lost in each minute: the next search of five seconds knows the noise.
+TEST(LoopFrozen, GapsDoNotHideAFrozenSensor) {
+  Model model;
+  model.effects = {{"static-constant", {0.004}}};
+  const Sample flown{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 60.0}};
+  Loop loop = build(model, flown, 25.0);
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss(0.0, 0.05);
+  double time = 0.0;
+  for (int i = 0; i < 15000; ++i) {
+    time += i % 1500 == 0 ? 1.0 : 0.04;
+    const double p = 700.0 + (i < 3000 ? gauss(random) : 0.0);
+    run(loop, {{Quantity::static_pressure, p}, {Quantity::dynamic_pressure, 60.0 + gauss(random)}}, time);
+    if (i >= 3000) {
+      ASSERT_EQ(loop.quality().has(Quality::sensor_frozen), i % 1500 >= 124) << i;
+    }
+  }
+}
+
 // A vane with steps of 0.022 deg, in turbulence for ten minutes and then in calm air.
 TEST(LoopFrozen, CalmAirAfterTurbulenceSetsNoBit) {
   const Sample flown{

@@ -104,6 +104,35 @@ TEST(Wind, FrozenSensorIsRejected) {
   }
 }
 
+TEST(Wind, ReadsGroundVelocityInComponents) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path = directory / "components.nc";
+  std::filesystem::copy_file(pcor::test::short_flight(), path);
+  {
+    netCDF::NcFile file(path.string(), netCDF::NcFile::write);
+    netCDF::NcVar speed = file.getVar("GGSPD");
+    netCDF::NcVar track = file.getVar("GGTRK");
+    std::vector<double> east(speed.getDim(0).getSize());
+    std::vector<double> north(east.size());
+    speed.getVar(east.data());
+    track.getVar(north.data());
+    for (std::size_t i = 0; i < east.size(); ++i) {
+      const double angle = north[i] * pcor::constants::radians_per_degree;
+      north[i] = east[i] * std::cos(angle);
+      east[i] *= std::sin(angle);
+    }
+    speed.putVar(east.data());
+    track.putVar(north.data());
+    speed.rename("GGVEW");
+    track.rename("GGVNS");
+    track.putAtt("units", "m/s");
+  }
+  const pcor::ModelDefinition model = pcor::test::laser_model();
+  const auto reference = pcor::wind_reference(model);
+  const pcor::FlightSamples samples = pcor::read_samples(pcor::Flight(path), model, *reference);
+  EXPECT_EQ(samples.reference.variables[1].second, "GGVEW and GGVNS");
+}
+
 TEST(Wind, FrozenSensorsOfAFlightAreIdentified) {
   const pcor::test::TemporaryDirectory directory;
   const pcor::ModelDefinition model = pcor::test::laser_model();

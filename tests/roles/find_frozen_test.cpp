@@ -44,9 +44,9 @@ void freeze(Series& values, std::size_t first, std::size_t count) {
   for (std::size_t i = first + 1; i < first + count; ++i) values[i] = values[first];
 }
 
-std::vector<std::pair<std::size_t, std::size_t>> found(const Series& values) {
+std::vector<std::pair<std::size_t, std::size_t>> found(const Series& values, bool always_varies = false) {
   std::vector<std::pair<std::size_t, std::size_t>> spans;
-  for (const pcor::Segment& span : find_frozen(values, std::vector<bool>(values.size(), true)))
+  for (const pcor::Segment& span : find_frozen(values, std::vector<bool>(values.size(), true), always_varies))
     spans.emplace_back(span.first, span.count);
   return spans;
 }
@@ -69,6 +69,44 @@ TEST(Frozen, EverySpanIsFoundWithItsLength) {
   EXPECT_EQ(found(values), spans);
 }
 
+TEST(Frozen, LongSpansDoNotDefineTheUsualLength) {
+  for (const Sensor& sensor : {Sensor{}, Sensor{0.3, 0.1}, Sensor{0.5, 1.0}}) {
+    for (const Spans& spans :
+         {Spans{{3000, 7800}}, Spans{{1000, 4000}, {6000, 4000}}, Spans{{1000, 1500}, {6000, 4000}}}) {
+      Series values = recorded(sensor, 1);
+      for (const auto& [first, count] : spans) freeze(values, first, count);
+      const Spans frozen = found(values, true);
+      ASSERT_EQ(frozen.size(), spans.size()) << sensor.resolution;
+      for (std::size_t i = 0; i < spans.size(); ++i) {
+        // Neighbours that are equal by chance belong to a span.
+        EXPECT_NEAR(static_cast<double>(frozen[i].first), static_cast<double>(spans[i].first), 5.0);
+        EXPECT_NEAR(static_cast<double>(frozen[i].second), static_cast<double>(spans[i].second), 10.0);
+      }
+    }
+  }
+}
+
+TEST(Frozen, SensorThatStopsAfterTheTakeOffIsFound) {
+  Series values = recorded({}, 1);
+  freeze(values, 40, values.size() - 40);
+  const std::vector<bool> all(values.size(), true);
+  EXPECT_EQ(find_frozen(pcor::Quantity::static_pressure, values, all).size(), 1U);
+  EXPECT_THAT(find_frozen(pcor::Quantity::flaps, values, all), IsEmpty());
+}
+
+// The same value after the landing is as wrong.
+TEST(Frozen, ASpanContinuesOnTheGround) {
+  Series values = recorded({}, 1);
+  freeze(values, 8000, 2800);
+  std::vector<bool> flying(values.size(), true);
+  std::fill(flying.begin() + 9000, flying.end(), false);
+  const std::vector<pcor::Segment> frozen = find_frozen(values, flying);
+  ASSERT_EQ(frozen.size(), 1U);
+  EXPECT_EQ(frozen[0].first + frozen[0].count, values.size());
+  std::fill(flying.begin() + 9200, flying.end(), true);  // a touch and go
+  EXPECT_EQ(find_frozen(values, flying).size(), 1U);
+}
+
 TEST(Frozen, IsFoundInCoarseValues) {
   // Steps of a third of the noise: one value in seven repeats itself.
   Series values = recorded({0.3, 0.1}, 1);
@@ -85,9 +123,13 @@ TEST(Frozen, IsFoundInCoarseValues) {
 
 TEST(Frozen, CoarseSlowOrRestingSeriesAreNotFrozen) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    EXPECT_THAT(found(recorded({0.5, 1.0}, seed)), IsEmpty()) << "whole numbers";
-    EXPECT_THAT(found(recorded({0.05, 1.0}, seed)), IsEmpty()) << "whole numbers without noise";
-    EXPECT_THAT(found(recorded({0.01, 0.1, 3000.0, 5.0}, seed)), IsEmpty()) << "a temperature that creeps";
+    for (const bool always_varies : {false, true}) {
+      EXPECT_THAT(found(recorded({0.5, 1.0}, seed), always_varies), IsEmpty()) << "whole numbers";
+      EXPECT_THAT(found(recorded({0.05, 1.0}, seed), always_varies), IsEmpty())
+          << "whole numbers without noise";
+      EXPECT_THAT(found(recorded({0.01, 0.1, 3000.0, 5.0}, seed), always_varies), IsEmpty())
+          << "a temperature that creeps";
+    }
     EXPECT_THAT(found(recorded({0.0, 0.0, 400.0, 0.0}, seed)), IsEmpty()) << "a constant";
     // Out for ten minutes at a time, in motion for ten seconds.
     Series flaps(10800, 0.0);
@@ -101,6 +143,19 @@ TEST(Frozen, CoarseSlowOrRestingSeriesAreNotFrozen) {
     const Series rough = recorded({0.5, 0.1, 2000.0, 3.0}, seed);
     std::copy_n(rough.begin(), 5400, calm.begin());
     EXPECT_THAT(found(calm), IsEmpty()) << "calm air after rough";
+    EXPECT_THAT(found(calm, true), IsEmpty()) << "calm air after rough";
+  }
+}
+
+// A vane with steps of 0.022 deg: turbulence, then air so calm that it keeps one value for minutes.
+TEST(Frozen, CalmVaneIsNotFrozen) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    for (const double noise : {0.002, 0.01}) {
+      Series vane = recorded({noise, 0.022, 2000.0, 1.0}, seed);
+      const Series rough = recorded({0.5, 0.022, 2000.0, 1.0}, seed);
+      std::copy_n(rough.begin(), 5400, vane.begin());
+      EXPECT_THAT(found(vane, true), IsEmpty()) << noise;
+    }
   }
 }
 

@@ -123,8 +123,14 @@ class FrozenWatch {
   }
 
   void reset() noexcept {
+    end();
+    for (Sensor& sensor : sensors_) sensor.value.reset();
+  }
+
+  /// Ends the runs of one value, as at a gap. The usual noise stays known.
+  void end() noexcept {
     for (Sensor& sensor : sensors_) {
-      sensor.value.reset();
+      sensor.value.end();
       sensor.is_frozen = false;
     }
   }
