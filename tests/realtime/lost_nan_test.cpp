@@ -1,6 +1,9 @@
 // Behaviour in a program that enables fast mathematics by a pragma, which the preprocessor cannot detect.
 #include <gtest/gtest.h>
 
+// The headers before the pragma keep NaN.
+#include <pcor/model/model.hpp>
+
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("finite-math-only")
 #define PCOR_LOSES_NAN

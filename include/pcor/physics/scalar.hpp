@@ -69,18 +69,6 @@ static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
                   !is_missing(std::numeric_limits<double>::infinity()),
               "pcor detects missing values by NaN, which these compiler options disable");
 
-/// True if the arithmetic of the compiled program keeps NaN and infinity. Fast-math options, which a pragma
-/// or an attribute can set without a macro, do not.
-inline bool arithmetic_keeps_nan() noexcept {
-  const volatile double zero = 0.0;
-  const volatile double maximum = std::numeric_limits<double>::max();
-  const double nan = zero / zero;
-  const double beyond = maximum * maximum;
-  return is_missing(nan) && !is_finite(nan) && !is_finite(beyond) && !is_missing(beyond) && !(nan < 1.0) &&
-         !(nan > 1.0) && !(nan <= 1.0 || nan >= 1.0) && is_missing(nan * zero + maximum) &&
-         beyond > std::numeric_limits<double>::max();
-}
-
 /// Value if finite, otherwise NaN.
 template <class S>
 constexpr S finite_or_missing(const S& value) {

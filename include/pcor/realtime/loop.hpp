@@ -166,7 +166,10 @@ class Loop {
       for (const auto& functor : functors_) functor->reset();
       if (look_ahead_) look_ahead_->reset();
       if (wetness_) wetness_->reset();
-      if (frozen_) frozen_->reset();
+      if (frozen_ && started_)
+        frozen_->end();
+      else if (frozen_)
+        frozen_->reset();
       clock_.reset();
       filter_clock_.reset();
       filter_time_ = missing<double>();
@@ -323,6 +326,19 @@ inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Qua
     return std::nullopt;
   }
   return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with, uncertainty, {}, filter);
+}
+
+/// True if the arithmetic of the compiled program keeps NaN and infinity. Fast-math options, which a pragma
+/// or an attribute can set without a macro, do not. Defined here, after the headers that a
+/// program may include before such a pragma.
+inline bool arithmetic_keeps_nan() noexcept {
+  const volatile double zero = 0.0;
+  const volatile double maximum = std::numeric_limits<double>::max();
+  const double nan = zero / zero;
+  const double beyond = maximum * maximum;
+  return is_missing(nan) && !is_finite(nan) && !is_finite(beyond) && !is_missing(beyond) && !(nan < 1.0) &&
+         !(nan > 1.0) && !(nan <= 1.0 || nan >= 1.0) && is_missing(nan * zero + maximum) &&
+         beyond > std::numeric_limits<double>::max();
 }
 
 inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
