@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include <pcor/base/suggest.hpp>
 
 namespace pcor::internal {
@@ -49,19 +51,31 @@ void each_letter(std::string_view text, Visit visit) {
   }
 }
 
+// Calls `put` with the pieces of the text on one line, without allocation.
+template <class Put>
+void each_piece(std::string_view text, Put put) {
+  each_letter(text, [&](std::string_view letter, bool is_shown) {
+    if (is_shown) {
+      put(letter);
+      return;
+    }
+    constexpr std::string_view digits = "0123456789abcdef";
+    for (const char byte : letter) {
+      const std::array code{'\\', 'x', digits[code_of(byte) >> 4U], digits[code_of(byte) & 0xfU]};
+      put(std::string_view(code.data(), code.size()));
+    }
+  });
+}
+
 }  // namespace
 
 std::string one_line(std::string_view text) {
   std::string line;
-  each_letter(text, [&](std::string_view letter, bool is_shown) {
-    if (is_shown) {
-      line += letter;
-    } else {
-      for (const char byte : letter) line += fmt::format("\\x{:02x}", code_of(byte));
-    }
-  });
+  each_piece(text, [&line](std::string_view piece) { line += piece; });
   return line;
 }
+
+void put_one_line(std::string_view text, void (*put)(std::string_view)) { each_piece(text, put); }
 
 std::string shortened(std::string_view text, std::size_t maximum) {
   std::size_t letters = 0;

@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <ctime>
 
@@ -12,7 +13,8 @@ namespace {
 std::atomic<const char*> in_hand{nullptr};
 std::atomic<clockid_t> readers_clock{CLOCK_PROCESS_CPUTIME_ID};
 std::atomic<double> taken_at{0.0};
-std::atomic<double> begun_at{0.0};
+std::atomic<double> worked_until{0.0};   // processor time
+std::atomic<double> worked_at{0.0};      // wall-clock time
 std::atomic<std::size_t> first_path{0};  // its hash; 0 if no file is being read
 std::atomic<bool> has_others{false};
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<clockid_t>::is_always_lock_free &&
@@ -33,16 +35,22 @@ bool had_previous_input() noexcept { return has_others; }
 double current_input_seconds() noexcept { return in_hand ? seconds_of(readers_clock) - taken_at : 0.0; }
 
 double seconds_of_waiting() noexcept {
-  constexpr double works = 0.1;  // s
-  return in_hand != nullptr && current_input_seconds() < works ? seconds_of(CLOCK_MONOTONIC) - begun_at : 0.0;
+  constexpr double works = 0.01;  // s, more than the signal handlers use in half a minute
+  if (in_hand == nullptr) return 0.0;
+  const double used = seconds_of(readers_clock), now = seconds_of(CLOCK_MONOTONIC);
+  if (std::abs(used - worked_until) >= works) {
+    worked_until = used;
+    worked_at = now;
+  }
+  return now - worked_at;
 }
 
 internal::FileInHand::FileInHand(const std::filesystem::path& path) noexcept : before_(in_hand) {
   clockid_t clock = CLOCK_PROCESS_CPUTIME_ID;
   pthread_getcpuclockid(pthread_self(), &clock);
   readers_clock = clock;
-  taken_at = seconds_of(clock);
-  begun_at = seconds_of(CLOCK_MONOTONIC);
+  taken_at = worked_until = seconds_of(clock);
+  worked_at = seconds_of(CLOCK_MONOTONIC);
   in_hand = path.c_str();
   const std::size_t hash = std::filesystem::hash_value(path);
   std::size_t none = 0;

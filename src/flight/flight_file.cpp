@@ -47,7 +47,7 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
       ": the attribute {} of {} is \"{}\", which is not valid for packed values; correct it with ncatted "
       "-a {} {}",
       attribute, file.variable_name(variable), text,
-      shell_quote(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
+      shell_quote(fmt::format("{},{},o,d,NUMBER", attribute, ncatted_name(file.variable_name(variable)))),
       shell_path(file.path().string()));
 }
 
@@ -64,14 +64,25 @@ UnitConversion FlightFile::unpacking_of(int variable) const {
           packing_number(*this, variable, "add_offset", 0)};
 }
 
+std::string ncatted_name(const std::string& variable) {
+  if (variable.find_first_of(".*+?^$|\\()[]{}<>") == std::string::npos) return variable;
+  std::string pattern = "^";
+  for (const char letter : variable) {
+    if (std::strchr(".*+?^$|\\()[]{}", letter) != nullptr) pattern += '\\';
+    pattern += letter;
+  }
+  return pattern + "$";
+}
+
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
   require_readable(path);
   const FileInHand in_hand(path);
   if (is_netcdf(path)) return std::make_unique<NetcdfFile>(path);
   if (is_icartt(path)) return open_icartt(path);
   if (path.extension() == ".gz")
-    fail(path, fmt::format(" is compressed; unpack it with gunzip -k {}, and name {}",
-                           shell_quote(path.string()), (path.parent_path() / path.stem()).string()));
+    fail(path,
+         fmt::format(" is compressed; unpack it with gunzip -k {}, and name {}", shell_path(path.string()),
+                     shell_path((path.parent_path() / path.stem()).string())));
   fail(path,
        " is not a netCDF file or an ICARTT file; give a file that `ncdump -k` can read, or whose first line "
        "ends in 1001");

@@ -89,6 +89,9 @@ class FlightFile {
   virtual void read(int variable, RecordBlock records, double* out) const = 0;
 };
 
+/// Name of a variable for the option -a of ncatted, which reads names with . * + and the like as patterns.
+std::string ncatted_name(const std::string& variable);
+
 /// Opens a file of any supported format. @throws Error if it is absent, of an unknown format, damaged or
 /// truncated.
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path);

@@ -334,8 +334,8 @@ void NetcdfFile::refuse_attribute(int variable, const std::string& name, const s
   refuse(Error::Code::variable,
          ": the attribute {} of {} {}; correct it, or remove it with ncatted -a {} {} (with h5py if ncatted "
          "cannot write the file)",
-         name, is_global ? "the file" : of, why, shell_quote(fmt::format("{},{},d,,", name, of)),
-         shell_path(path_.string()));
+         name, is_global ? "the file" : of, why,
+         shell_quote(fmt::format("{},{},d,,", name, ncatted_name(of))), shell_path(path_.string()));
 }
 
 std::string NetcdfFile::ignored_range(int variable) const {

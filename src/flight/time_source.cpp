@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <optional>
 #include <string_view>
@@ -92,7 +93,7 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {file, name,
-          "state its unit with ncatted -a " + shell_quote("units," + name + ",o,c,") +
+          "state its unit with ncatted -a " + shell_quote("units," + ncatted_name(name) + ",o,c,") +
               shell_quote("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
               (date ? "" : ", where DAY is its reference date as year-month-day"),
           usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
@@ -182,6 +183,30 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
     refuse_time_of_day();
   }
   return std::nullopt;
+}
+
+// Whether the units state no time but midnight in UTC, apart from a date: FlightDate can replace the date,
+// and neither a time of day nor an offset.
+bool counts_from_midnight(const std::string& units) {
+  constexpr const char* digits = "0123456789";
+  constexpr std::size_t max_letters = 10;  // 2004-02-18
+  const std::size_t date = units.find_first_of(digits);
+  if (date == std::string::npos) return true;
+  std::size_t end = std::min(units.find_first_not_of(digits, date), units.size());
+  for (int part = 0; part < 2 && end < units.size() && std::strchr("-/.", units[end]) != nullptr; ++part)
+    end = std::min(units.find_first_not_of(digits, end + 1), units.size());
+  const bool has_date = end == units.size() || units[end] != ':';  // "seconds since 00:00:00"
+  const std::string of_day = has_date ? units.substr(end) : " " + units.substr(date);
+  if (end - date > max_letters || !is_time_of_day(of_day)) return false;
+  try {
+    const std::string known = "2000-01-01";
+    const auto epoch =
+        UnitConversion::between(units.substr(0, date) + known + of_day, "seconds since " + known, {});
+    return epoch.scale() == 1 && std::abs(epoch.offset()) < 0.001;
+  } catch (const Error& error) {
+    if (error.code() != Error::Code::unit) throw;
+    return false;
+  }
 }
 
 // The start in TimeInterval ("14:22:00-15:13:00"), seconds since midnight.
@@ -274,6 +299,12 @@ TimeSource find_time(const FlightFile& file) {
   if (const auto start = has_base ? offset_of_seconds(*raw, base) : std::nullopt)
     return {variable, dimension, 1, *start};
   if (const auto midnight = flight_date(file)) {
+    if (!counts_from_midnight(units))
+      file.refuse(
+          Error::Code::time,
+          ": {} counts in \"{}\", which pcor cannot read completely; write its date as year-month-day "
+          "hour:minute:second +hhmm; if it counts from midnight in UTC, {}",
+          name, units, counting.how_to_state);
     const auto start = interval_start(file);
     const auto from = start ? offset_of_seconds(*raw, *midnight + *start)
                             : std::optional(*raw > 0 && *raw < 2 * day ? *midnight : -1);

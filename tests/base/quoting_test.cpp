@@ -19,6 +19,12 @@ TEST(OneLine, EscapesControlCharacters) {
   EXPECT_EQ(one_line("\u2013\u2026\u2032\u2070"), "\u2013\u2026\u2032\u2070");
 }
 
+TEST(OneLine, IsTheSameInPieces) {
+  static std::string line;
+  put_one_line("a\nb\xff\u20ac", [](std::string_view piece) { line += piece; });
+  EXPECT_EQ(line, "a\\x0ab\\xff\u20ac");
+}
+
 TEST(OneLine, KeepsValidUtf8AndEscapesInvalidBytes) {
   EXPECT_EQ(one_line("\u00b5m\u00b3 \u20ac \U0001f6e9"), "\u00b5m\u00b3 \u20ac \U0001f6e9");
   EXPECT_EQ(one_line("\xe2\x82"), "\\xe2\\x82") << "a truncated character";

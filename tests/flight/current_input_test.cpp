@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 namespace pcor::internal {
 namespace {
@@ -35,6 +37,17 @@ TEST(FileInHand, MeasuresItsProcessingTime) {
   }
   const FileInHand again(path);
   EXPECT_LT(current_input_seconds(), 0.01) << "restarted";
+}
+
+TEST(FileInHand, WaitingBeginsWhenProcessingStops) {
+  EXPECT_EQ(seconds_of_waiting(), 0.0);
+  const std::filesystem::path path = "flight.nc";
+  const FileInHand in_hand(path);
+  while (current_input_seconds() < 0.15) {
+  }
+  EXPECT_LT(seconds_of_waiting(), 0.01);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_GE(seconds_of_waiting(), 0.2);
 }
 
 }  // namespace

@@ -19,6 +19,14 @@ using testing::IsNan;
 
 namespace {
 
+TEST(NcattedName, MatchesThatVariableOnly) {
+  using pcor::internal::ncatted_name;
+  EXPECT_EQ(ncatted_name("PSFD_2-a b"), "PSFD_2-a b");
+  EXPECT_EQ(ncatted_name("P.A"), "^P\\.A$");
+  EXPECT_EQ(ncatted_name("O<P>"), "^O<P>$") << "an escaped < is the begin of a word";
+  EXPECT_EQ(ncatted_name("E[1]+\\"), "^E\\[1\\]\\+\\\\$");
+}
+
 /// Three records over (Time) and (Time, sps2), in memory.
 class MemoryFile final : public FlightFile {
  public:

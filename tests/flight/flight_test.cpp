@@ -339,6 +339,31 @@ TEST_F(FlightTest, TimeZoneMustBeUtcOrAnOffset) {
   }
 }
 
+TEST_F(FlightTest, FlightDateReplacesOnlyTheDate) {
+  const auto make = [this](const std::string& units) {
+    NetcdfMaker maker(path());
+    maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");
+    maker.time({51720, 51721}, units);
+  };
+  for (const char* units :
+       {"seconds since 20040218T000000-0700", "seconds since 20040218050000",
+        "seconds since 02/18/2004 05:00:00", "seconds since 18-02-2004 00:00:00 +05:00",
+        "seconds since 18-02-2004 00:60:00", "seconds since 18-02-2004 00:00:00 MST",
+        "seconds since 2004-02-31 00:00:00 -07:00", "seconds from 2004-02-18 00:00:00 -07:00",
+        "seconds since 1970-01-01 00:00:00 -07:00", "seconds since 00:00:00 -07:00",
+        "hours since 18-02-2004"}) {
+    make(units);
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, units, "ncatted -a units,Time"));
+  }
+  for (const char* units : {"s", "seconds since midnight", "seconds since 00:00:00 UTC",
+                            "seconds since 1141-01-00 00:00:00 +0000", "seconds since 20040218",
+                            "seconds since 02/18/2004 00:00:00", "seconds since 18-02-2004T00:00:00Z",
+                            "seconds since 1970-1-1 0:00:00 0:00"}) {
+    make(units);
+    EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-18 14:22:00") << units;
+  }
+}
+
 TEST_F(FlightTest, InvalidDateIsRefused) {
   for (const char* date : {"2011-13-45", "2011-02-30", "2011-00-10", "2004-049", "0000-01-01"}) {
     { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since ") + date); }

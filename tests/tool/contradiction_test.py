@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Flights, models and names that contradict themselves, or mean something to a shell.
+"""Contradictory flights and models, and names with special characters of a shell.
 
     contradiction_test.py TOOL SOURCE_DIRECTORY
 """
@@ -54,7 +54,7 @@ class Pasting(ChangedTest):
         super().setUp()
         programs = self.path / "programs"
         programs.mkdir()
-        for name in ("ncatted", "ncks", "ncdump"):
+        for name in ("gunzip", "ncatted", "ncks", "ncdump"):
             (programs / name).write_text(FAKE)
             (programs / name).chmod(0o755)
         (programs / "pcor").symlink_to(TOOL)
@@ -197,9 +197,19 @@ class Pasting(ChangedTest):
                     self.assertEqual(words[-1], f"./{name}" if name.startswith("-") else name)
                     self.assertEqual(len(words), 3, words)
 
+    def test_the_command_that_unpacks_quotes_file_names(self):
+        for name in HOSTILE:
+            with self.subTest(name):
+                name += ".gz"
+                (self.work / name).write_bytes(b"\x1f\x8b")
+                result = self.here("inspect", "--", name)
+                self.assertEqual(result.returncode, 1)
+                self.paste(re.search(r"gunzip -k .*(?=, and name)", result.stderr).group())
+                self.assertEqual(self.log.read_text().splitlines(), ["-k", f"./{name}" if name.startswith("-") else name])
+
 
 class Frozen(ChangedTest):
-    """GOTEX rf06, in which a minute of one variable is held at one value."""
+    """GOTEX rf06 with one variable constant for a minute."""
 
     HELD = {"PSFD": slice(1500, 1560), "ATTACK": slice(2000, 2060)}
 
@@ -410,16 +420,18 @@ class Inspect(ChangedTest):
         hdf5.H5Lcreate_external.argtypes = [ctypes.c_char_p, ctypes.c_char_p, ctypes.c_int64, ctypes.c_char_p,
                                             ctypes.c_int64, ctypes.c_int64]
         hdf5.H5Fclose.argtypes = [ctypes.c_int64]
-        path, pipe = self.path / "linked.nc", self.path / "pipe"
-        self.flight_of_four_seconds(path).close()
+        path, pipe = self.path / "linked\n\x1b[31m.nc", self.path / "pipe"
+        with self.flight_of_four_seconds(path) as flight:
+            for number in range(5000):  # the reader works before it waits
+                flight.createVariable(f"V{number}", "f4", ("Time",)).units = "hPa"
         os.mkfifo(pipe)
         file = hdf5.H5Fopen(os.fsencode(path), 1, 0)
         self.assertGreaterEqual(file, 0)
-        self.assertGreaterEqual(hdf5.H5Lcreate_external(os.fsencode(pipe), b"/x", file, b"PSFD", 0, 0), 0)
+        self.assertGreaterEqual(hdf5.H5Lcreate_external(os.fsencode(pipe), b"/x", file, b"ZZZ", 0, 0), 0)
         hdf5.H5Fclose(file)
         result = self.run_tool("inspect", path, timeout=90)
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"linked\.nc.*pipe")
+        self.assertRegex(result.stderr, r"linked\\x0a\\x1b\[31m\.nc.*pipe")
 
 
 if __name__ == "__main__":

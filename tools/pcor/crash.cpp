@@ -11,8 +11,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <string_view>
 
 #include <pcor/base/atomic_file.hpp>
+#include <pcor/base/message.hpp>
 #include <pcor/flight/current_input.hpp>
 
 namespace pcor::tool {
@@ -26,8 +28,8 @@ constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 std::array<struct sigaction, crashes.size()> earlier;  // handlers of a sanitizer, if any
 volatile std::sig_atomic_t is_running = 0;
 
-void print(const char* text) {
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
+void print(std::string_view text) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
 /// @param file that was being read; null if unknown
@@ -35,7 +37,7 @@ void print(const char* text) {
   remove_unfinished_files();
   print("pcor: ");
   if (file != nullptr) {
-    print(file);
+    put_sanitized(file, print);
     print(
         had_previous_input()
             ? ": this flight or one read before it is damaged: the HDF5 library failed; find it with pcor "
@@ -95,7 +97,7 @@ extern "C" void watch_waiting(int /*signal*/) {
     return;
   remove_unfinished_files();
   print("pcor: ");
-  print(file);
+  put_sanitized(file, print);
   print(
       ": no data for half a minute; the path may be a pipe or an unavailable disk; copy the file and give "
       "the copy\n");

@@ -9,6 +9,9 @@ namespace pcor {
 /// length. Control characters and invalid UTF-8 bytes become \x1b and the like.
 std::string sanitize_line(std::string_view message);
 
+/// Puts the message in pieces and at full length, without allocation: for signal handlers.
+void put_sanitized(std::string_view message, void (*put)(std::string_view));
+
 /// Text for display: as `sanitize_line`, but lines and length are kept.
 std::string shown_text(std::string_view text);
 

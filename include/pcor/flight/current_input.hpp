@@ -23,8 +23,8 @@ double current_input_seconds() noexcept;
 /// Maximum waiting time without processor activity, s: a file may link to a pipe, which never responds.
 inline constexpr int max_seconds_of_waiting = 30;
 
-/// Waiting time of the reading thread without processor activity since its last read began, s. 0 if no flight
-/// is being read, and if the thread is running.
+/// Waiting time of the reading thread, s: since its last read began or since the last call that found that
+/// the thread had used processor time. 0 if no flight is being read. To be called regularly.
 double seconds_of_waiting() noexcept;
 
 }  // namespace pcor
