@@ -102,8 +102,10 @@ class Plausibility {
         wrong->ratio, "1",
         wrong->are_exchanged
             ? "refused; static_pressure and dynamic_pressure may be exchanged in the [variables] of the model"
-            : fmt::format("refused; state its unit in the [units] of the model{}",
-                          wrong->unit.empty() ? "" : fmt::format(", {} = \"{}\"", role, wrong->unit)));
+        : wrong->unit.empty()
+            ? "refused; no unit explains this ratio, so a sensor or its calibration is wrong"
+            : fmt::format("refused; state its unit in the [units] of the model, {} = \"{}\"", role,
+                          wrong->unit));
   }
 
   void temperature_against_height() {

@@ -49,8 +49,8 @@ void note_other_unit(const Flight& flight, const ModelDefinition& file, const Va
         is_same(a.scale(), b.scale()) || (stated == family.unit_of(name) && is_same(a.scale(), -b.scale()));
     if (same_scale && is_same(a.offset(), b.offset())) return;
   }
-  warn_once(notes, fmt::format("{} is read in {} in place of {}, as [units] of the model or the data of the "
-                               "aircraft state",
+  warn_once(notes, fmt::format("{} is read in {}, not in {} of the file: [units] of the model or the data of "
+                               "the aircraft state this unit",
                                name, quote(stated), quote(recorded)));
 }
 
@@ -66,9 +66,10 @@ void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& note
   const bool is_ambient =
       says({"ambient", "static", "outside"}) || variable.attribute("standard_name") == "air_temperature";
   if (!is_ambient || says({"recovery", "total", "indicated"})) return;
-  warn_once(notes, fmt::format("{} is recovery_temperature in the model, but '{}' in the file; name it "
-                               "ambient_temperature, or another variable",
-                               name, variable.long_name.empty() ? "air_temperature" : variable.long_name));
+  warn_once(notes,
+            fmt::format("name {} as ambient_temperature in [variables], not as recovery_temperature; the "
+                        "file describes it as '{}'",
+                        name, variable.long_name.empty() ? "air_temperature" : variable.long_name));
 }
 
 /// Whether model and flight state different aircraft.
@@ -98,7 +99,7 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
 
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, Notes& notes) {
-  require_possible_pressure(flight, file);
+  require_possible_pressure(flight, file, notes);
   note_ambient(flight, file, notes);
   const VariableNaming& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
@@ -117,11 +118,8 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
     return believed(flight.conversion(variable, std::string(info.unit), std::string(info.name), unit), info);
   };
   std::vector<ModelInput> inputs;
-  const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
-                       Quantity::vapor_pressure,       Quantity::dew_point,
-                       Quantity::frost_point,          Quantity::lams_airspeed};
   for (const Quantity role : roles) {
-    if (!chain.needs(role) && std::find(always.begin(), always.end(), role) == always.end()) continue;
+    if (!chain.needs(role) && !is_always_read(role)) continue;
     inputs.push_back({file.variables.at(role), role, conversion_of(role)});
   }
   // A formula that names the variable of a role means that role; other variables it takes as the file has
@@ -182,12 +180,13 @@ Notes notes_on_law(const Flight& flight, const ModelDefinition& file) {
   if (!law.holds_on(day)) {
     const bool early = day < law.valid_from;
     notes.push_back(warning_note(
-        fmt::format("the law is valid {} {}, the flight is of {}; choose a model of its time in data/models",
+        fmt::format("the law is valid {} {}, the flight is of {}; choose a model of that date in data/models",
                     early ? "from" : "until", early ? law.valid_from : law.valid_to, day)));
   }
   if (are_of_two_aircraft(file, flight)) {
-    notes.push_back(warning_note(fmt::format("the model is of the aircraft '{}', the flight of '{}'",
-                                             file.model.aircraft, flight.aircraft())));
+    notes.push_back(
+        warning_note(fmt::format("use a model of this aircraft: the model is for '{}', the flight is of '{}'",
+                                 file.model.aircraft, flight.aircraft())));
   }
   return notes;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -18,8 +19,9 @@
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t fewest = 20;  // minimum number of values
-constexpr double flown = 20.0;      // hPa, dynamic pressure in flight
+constexpr std::size_t fewest = 20;    // minimum number of values
+constexpr double flown = 20.0;        // hPa, dynamic pressure in flight
+constexpr std::size_t a_minute = 60;  // values
 
 /// The unit in which a role is read.
 std::string stated_unit(const Flight& flight, const ModelDefinition& model, const VariableNaming& family,
@@ -28,13 +30,13 @@ std::string stated_unit(const Flight& flight, const ModelDefinition& model, cons
   return stated.empty() ? flight.variable(model.variables.at(role)).units : stated;
 }
 
-/// Some values in the unit of the role; empty if the variable cannot be read.
+/// The values in the unit of the role; empty if the variable cannot be read.
 std::vector<double> values_as(Quantity role, const Flight& flight, const VariableNaming& family,
                               const std::string& variable, const std::string& stated = {}) {
   const std::string unit = stated.empty() ? family.unit_of(variable) : stated;
   const std::string requested(info_of(role).unit);
   if (!has_values(flight, variable, requested, unit)) return {};
-  return some_values(flight, variable, flight.conversion(variable, requested, "", unit));
+  return read_values(flight, variable, flight.conversion(variable, requested, "", unit)).values;
 }
 
 /// Median ratio of recorded to expected values; NaN if there are too few values, or if the ratio varies, so
@@ -52,10 +54,38 @@ double ratio_of(const std::vector<double>& pressure, const std::vector<double>& 
   return median(std::move(ratios)) > steady ? nan : middle;
 }
 
-/// Whether the heights fit the pressures if they are feet.
-bool are_feet(const std::vector<double>& pressure, std::vector<double> heights) {
-  for (double& height : heights) height = standard_pressure(0.3048 * height);
-  return std::abs(ratio_of(pressure, heights) - 1.0) < 0.1;
+/// Whether the heights, if they are feet, fit the pressures within 10 % at all heights, and better than
+/// metres and a pressure of a wrong scale do, which agree with feet near one height only. Level flight agrees
+/// with both; the heights are then in feet unless a unit explains the pressure.
+bool are_feet(const std::vector<double>& pressure, const std::vector<double>& heights, bool unit_fits) {
+  constexpr std::size_t groups = 20;
+  constexpr double level = 1000.0;  // range of the values
+  std::vector<std::pair<double, double>> pairs;
+  for (std::size_t i = 0; i < std::min(pressure.size(), heights.size()); ++i) {
+    if (pressure[i] > 0.0 && std::isfinite(standard_pressure(heights[i])))
+      pairs.emplace_back(heights[i], pressure[i]);
+  }
+  if (pairs.size() < fewest) return false;
+  std::sort(pairs.begin(), pairs.end());
+  // Least and greatest of the medians of groups of increasing height: of the ratio if the values are feet, of
+  // the ratio if they are metres, and of the values.
+  std::array<double, 3> least{}, greatest{};
+  for (std::size_t group = 0; group < groups; ++group) {
+    std::array<std::vector<double>, 3> values;
+    for (std::size_t i = group * pairs.size() / groups; i < (group + 1) * pairs.size() / groups; ++i) {
+      const auto [height, recorded] = pairs[i];
+      values[0].push_back(recorded / standard_pressure(0.3048 * height));
+      values[1].push_back(recorded / standard_pressure(height));
+      values[2].push_back(height);
+    }
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const double middle = median(values[k]);
+      least[k] = group == 0 ? middle : std::min(least[k], middle);
+      greatest[k] = group == 0 ? middle : std::max(greatest[k], middle);
+    }
+  }
+  if (least[0] < 0.9 || greatest[0] > 1.1) return false;
+  return greatest[2] - least[2] < level ? !unit_fits : greatest[0] / least[0] < greatest[1] / least[1];
 }
 
 /// The unit that explains a pressure of `ratio` times the expected one. Empty if no unit does, or only its
@@ -114,6 +144,28 @@ class PressureCheck {
     return is_confirmed ? std::nullopt : contradicted;
   }
 
+  /// Adds a warning for each system that agrees in most of the flight, but not in a part.
+  void note_parts(Notes& notes) const {
+    if (!is_in_doubt(Quantity::static_pressure)) return;
+    const std::string& variable = model_.variables.at(Quantity::static_pressure);
+    const auto compare = [&](const PressurePair& pair, bool is_measured) {
+      const std::vector<double> other =
+          values_as(Quantity::static_pressure, flight_, family_, pair.static_pressure);
+      if (!is_measured || !(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
+      std::size_t contradicting = 0;
+      for (std::size_t i = 0; i < other.size(); ++i) {
+        const bool have_values = static_pressure_[i] > 0.0 && other[i] > 0.0;
+        contradicting += have_values && std::abs(static_pressure_[i] / other[i] - 1.0) > max_of_other ? 1 : 0;
+      }
+      if (contradicting < a_minute) return;
+      notes.push_back(warning_note(fmt::format(
+          "check {0} and {1}: {0} differs from {1} by more than {2:g} % in {3} of {4} records, so one of the "
+          "sensors failed",
+          variable, pair.static_pressure, 100.0 * max_of_other, contradicting, other.size())));
+    };
+    each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
+  }
+
   std::optional<ImpossiblePressure> dynamic_pressure() const {
     if (!is_in_doubt(Quantity::dynamic_pressure)) return std::nullopt;
     const std::vector<double> recorded = values_of(Quantity::dynamic_pressure);
@@ -140,7 +192,6 @@ class PressureCheck {
   /// exchange or a wrong unit holds in nearly all samples in flight, a failed sensor or a spike does not.
   std::optional<ImpossiblePressure> static_below_dynamic() const {
     constexpr double max_of_static = 1.5;
-    constexpr std::size_t a_minute = 60;  // values
     const std::vector<double> dynamic_pressure = values_of(Quantity::dynamic_pressure);
     // In a wrong unit taxiing exceeds the absolute limit.
     const double in_flight = std::max(flown, 0.2 * median(dynamic_pressure));
@@ -195,11 +246,15 @@ class PressureCheck {
     double max_of_height = 0.1;
     const std::string height = height_of(flight_, model_, family_);
     if (height.empty() || model_.units.count(Quantity::altitude) != 0) return {nan, max_of_height};
-    std::vector<double> expected = values_as(Quantity::altitude, flight_, family_, height);
-    if (const double middle = median(expected); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
-    if (are_feet(static_pressure_, expected)) return {nan, max_of_height};
-    std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
-    return {ratio_of(static_pressure_, expected), max_of_height};
+    const std::vector<double> heights = values_as(Quantity::altitude, flight_, family_, height);
+    if (const double middle = median(heights); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
+    std::vector<double> expected(heights.size());
+    std::transform(heights.begin(), heights.end(), expected.begin(), standard_pressure);
+    const double ratio = ratio_of(static_pressure_, expected);
+    if (!(std::abs(ratio - 1.0) > max_of_height)) return {ratio, max_of_height};
+    const bool unit_fits =
+        !unit_that_fits(stated_unit(flight_, model_, family_, Quantity::static_pressure), ratio).empty();
+    return {are_feet(static_pressure_, heights, unit_fits) ? nan : ratio, max_of_height};
   }
 
   ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {
@@ -224,10 +279,7 @@ class PressureCheck {
   std::vector<double> static_pressure_;
 };
 
-}  // namespace
-
-std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
-  const PressureCheck check(flight, model);
+std::optional<ImpossiblePressure> finding_of(const PressureCheck& check) {
   std::optional<ImpossiblePressure> wrong = check.static_pressure();
   if (!wrong) wrong = check.dynamic_pressure();
   const std::optional<ImpossiblePressure> below = check.static_below_dynamic();
@@ -239,9 +291,16 @@ std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, cons
   return are_exchanged ? below : wrong;
 }
 
-void require_possible_pressure(const Flight& flight, const ModelDefinition& model) {
-  const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight, model);
-  if (!wrong) return;
+}  // namespace
+
+std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
+  return finding_of(PressureCheck(flight, model));
+}
+
+void require_possible_pressure(const Flight& flight, const ModelDefinition& model, Notes& notes) {
+  const PressureCheck check(flight, model);
+  const std::optional<ImpossiblePressure> wrong = finding_of(check);
+  if (!wrong) return check.note_parts(notes);
   const std::string& variable = model.variables.at(wrong->role);
   const std::string unit = stated_unit(flight, model, family_of(model, flight), wrong->role);
   const std::string is_wrong = fmt::format("{}: {} in {} is {:.3g} times {}", flight.path().string(),
@@ -254,13 +313,18 @@ void require_possible_pressure(const Flight& flight, const ModelDefinition& mode
                     "sensor failed",
                     is_wrong, wrong->against));
   }
+  if (wrong->unit.empty()) {
+    throw Error(Error::Code::variable,
+                fmt::format("{}; no unit explains this ratio, so a sensor or its calibration is wrong; name "
+                            "another variable for {} in the [variables] of the model",
+                            is_wrong, info_of(wrong->role).name));
+  }
   throw Error(
       Error::Code::unit,
-      fmt::format("{}{}; set the right unit in the [units] of the model, {} = {}, or name another "
-                  "variable; heights and other systems do not check a unit set there",
-                  is_wrong, wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-                  info_of(wrong->role).name,
-                  wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
+      fmt::format(
+          "{}, as if it were in {}; set the right unit in the [units] of the model, {} = \"{}\", or name "
+          "another variable; heights and other systems do not check a unit set there",
+          is_wrong, wrong->unit, info_of(wrong->role).name, wrong->unit));
 }
 
 }  // namespace pcor::internal

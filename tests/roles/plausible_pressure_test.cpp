@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -60,6 +61,33 @@ class PlausiblePressure : public testing::Test {
     return Flight(path);
   }
 
+  /// A climb from 400 to 4600 m of which most is level at 3000 m, with the height multiplied by `scale`.
+  Flight climb(const char* unit, double gain, double scale = 1.0, double lowest = 400.0) {
+    const auto path = folder_.path() / "flight.nc";
+    std::vector<double> heights(1000, 3000.0), pressures;
+    for (std::size_t i = 0; i < 200; ++i) {
+      heights[i] = lowest + 13.0 * static_cast<double>(i);
+      heights[800 + i] = 3000.0 + 8.0 * static_cast<double>(i);
+    }
+    for (double& height : heights) {
+      pressures.push_back(gain * standard_pressure(height));
+      height *= scale;
+    }
+    {
+      test::NetcdfMaker maker(path);
+      maker.time(test::sequence(0, 1000));
+      maker.series("PSFD", unit, pressures);
+      maker.series("GGALT", "m", heights);
+    }
+    return Flight(path);
+  }
+
+  static Notes require(const Flight& flight, const ModelDefinition& model) {
+    Notes notes;
+    require_possible_pressure(flight, model, notes);
+    return notes;
+  }
+
   static ModelDefinition model_of_pair() {
     ModelDefinition model = PlausiblePressure::model();
     model.variables[Quantity::dynamic_pressure] = "QCF";
@@ -77,7 +105,7 @@ class PlausiblePressure : public testing::Test {
 
 TEST_F(PlausiblePressure, HectopascalsLabelledPascalsAreRefused) {
   const Flight wrong = flight("Pa", 700.0, "GGALT", 3000.0);
-  EXPECT_THAT(test::error_of([&] { require_possible_pressure(wrong, model()); }),
+  EXPECT_THAT(test::error_of([&] { require(wrong, model()); }),
               test::IsError(Error::Code::unit, "PSFD", "'Pa'", "GGALT", "static_pressure = \"hPa\""));
   ModelDefinition stated = model();
   stated.units[Quantity::static_pressure] = "Pa";
@@ -93,6 +121,59 @@ TEST_F(PlausiblePressure, SystemsDifferingByMoreThanFivePercentAreInconsistent) 
   EXPECT_TRUE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 760.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 710.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0), model())) << "no variable for a comparison";
+}
+
+// The height was assumed to be in feet: PSXC was 1.333 times the truth, with status 0.
+TEST_F(PlausiblePressure, GainIsNotExplainedByAHeightInFeet) {
+  for (const double gain : {1.2, 1.25, 1.3, 1.4, 1.45})
+    EXPECT_TRUE(impossible_pressure(climb("hPa", gain), model())) << gain;
+  const auto torr = impossible_pressure(climb("torr", 1.0), model());
+  ASSERT_TRUE(torr);
+  EXPECT_EQ(torr->unit, "hPa");
+  EXPECT_NEAR(torr->ratio, 1.333, 0.001);
+}
+
+TEST_F(PlausiblePressure, HeightInFeetIsNotAnError) {
+  for (const double gain : {0.96, 1.0, 1.04}) {
+    EXPECT_FALSE(impossible_pressure(climb("hPa", gain, 1.0 / 0.3048), model())) << gain;
+    EXPECT_FALSE(impossible_pressure(climb("hPa", gain, 1.0 / 0.3048, 2500.0), model())) << gain;
+  }
+  EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0, "GGALT", 3000.0 / 0.3048), model()))
+      << "level flight";
+}
+
+TEST_F(PlausiblePressure, UnitThatFitsIsLikelierThanFeetInLevelFlight) {
+  const auto torr = impossible_pressure(flight("torr", 700.0, "GGALT", 3000.0), model());
+  ASSERT_TRUE(torr);
+  EXPECT_EQ(torr->unit, "hPa");
+}
+
+// The advice was the unit that the pressure has, which disables the check.
+TEST_F(PlausiblePressure, AGainIsNotCorrectedByAUnit) {
+  const Flight wrong = flight("hPa", 800.0, "PSFRD", 700.0);
+  const auto error = test::error_of([&] { require(wrong, model()); });
+  EXPECT_THAT(error, test::IsError(Error::Code::variable, "PSFD", "1.14", "calibration", "static_pressure"));
+  EXPECT_THAT(error, testing::Not(test::IsError(Error::Code::variable, "[units]")));
+}
+
+TEST_F(PlausiblePressure, PartThatAnotherSystemContradictsGivesANote) {
+  const auto notes_of = [&](std::size_t first, std::size_t count) {
+    const auto path = folder_.path() / "flight.nc";
+    {
+      test::NetcdfMaker maker(path);
+      maker.time(test::sequence(0, 1000));
+      std::vector<double> values(1000, 700.0);
+      maker.series("PSFRD", "hPa", values);
+      std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(first), count, 770.0);
+      maker.series("PSFD", "hPa", values);
+    }
+    return require(Flight(path), model());
+  };
+  EXPECT_TRUE(notes_of(300, 59).empty());
+  const Notes notes = notes_of(300, 400);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0].severity, Severity::warning);
+  EXPECT_THAT(notes[0].text, testing::AllOf(testing::HasSubstr("PSFRD"), testing::HasSubstr("400 of 1000")));
 }
 
 TEST_F(PlausiblePressure, WrongOtherSystemIsNotAnError) {
@@ -146,12 +227,12 @@ TEST_F(PlausiblePressure, StaticPressureBelowDynamicIsRefused) {
     EXPECT_TRUE(wrong->are_exchanged) << "no unit: kPa also gives a tenth of the value expected";
     EXPECT_NEAR(wrong->ratio, 0.1, 1e-9);
     EXPECT_THAT(
-        test::error_of([&] { require_possible_pressure(exchanged, model_of_pair()); }),
+        test::error_of([&] { require(exchanged, model_of_pair()); }),
         test::IsError(Error::Code::variable, "PSFD", "QCF", "[variables]", "static_pressure = \"QCF\""));
   }
   const auto wrong_unit = impossible_pressure(flight_of({{7.0, 60.0}}), model_of_pair());
   ASSERT_TRUE(wrong_unit);
-  EXPECT_FALSE(wrong_unit->are_exchanged) << "60 hPa is no static pressure of 3000 m";
+  EXPECT_FALSE(wrong_unit->are_exchanged) << "60 hPa is impossible at 3000 m";
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 987.0}}), model_of_pair())) << "Mach 1.2";
   EXPECT_FALSE(impossible_pressure(flight_of({{7.0, 15.0}}, 35000.0), model_of_pair())) << "not in flight";
   EXPECT_FALSE(impossible_pressure(flight_of({{-9999.0, 60.0}}, std::nan("")), model_of_pair()))
@@ -189,11 +270,11 @@ TEST_F(PlausiblePressure, StatedUnitThatMakesAPressureImpossibleIsNamed) {
   ModelDefinition stated = model_of_pair();
   stated.units[Quantity::static_pressure] = "Pa";
   const Flight right = flight_of({{700.0, 60.0}});
-  EXPECT_THAT(test::error_of([&] { require_possible_pressure(right, stated); }),
+  EXPECT_THAT(test::error_of([&] { require(right, stated); }),
               test::IsError(Error::Code::unit, "PSFD in 'Pa'", "QCF", "static_pressure = \"hPa\""));
   stated = model_of_pair();
   stated.units[Quantity::dynamic_pressure] = "psi";
-  EXPECT_THAT(test::error_of([&] { require_possible_pressure(right, stated); }),
+  EXPECT_THAT(test::error_of([&] { require(right, stated); }),
               test::IsError(Error::Code::unit, "QCF in 'psi'", "PSFD", "dynamic_pressure = \"hPa\""));
 }
 
