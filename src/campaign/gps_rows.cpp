@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/hydrostatic.hpp>
@@ -11,6 +12,7 @@
 #include "numerics/low_pass.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "regimes/series.hpp"
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
 
@@ -34,6 +36,7 @@ enum Column : Eigen::Index {
   isobar_east,
   isobar_north
 };
+static_assert(isobar_north + 1 == gps_nuisance_count);
 
 double value_or(const Series& series, std::size_t i, double otherwise) {
   return series.empty() || std::isnan(series[i]) ? otherwise : series[i];
@@ -57,11 +60,12 @@ constexpr double min_airspeed = 40.0;  // m/s
 std::vector<bool> without_humidity(const ModelSamples& samples, const ModelOnSamples& law) {
   std::vector<bool> without(samples.find(Quantity::static_pressure)->size(), false);
   if (!law.chain().counts_vapor()) return without;
-  for (const Quantity humidity : {Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}) {
+  for (const Quantity humidity : humidity_roles) {
     const Series* const values = samples.find(humidity);
     if (values == nullptr) continue;
-    for (std::size_t i = 0; has_value(*values) && i < without.size(); ++i)
-      without[i] = std::isnan((*values)[i]);
+    if (!has_value(*values)) break;
+    std::transform(values->begin(), values->end(), without.begin(),
+                   [](double value) { return std::isnan(value); });
     break;
   }
   return without;
@@ -336,45 +340,56 @@ Series thickness_of(const Air& air) {
   return thickness;
 }
 
+/// Velocity over the ground and wind, m/s, and the direction of the airspeed.
+struct WindSeries {
+  Series ground_east, ground_north;
+  Series east, north;  // ground velocity minus airspeed; NaN if unknown
+  Series course;       // direction of the airspeed, continuous, deg
+  Series level_share;  // horizontal part of the airspeed, 1
+};
+
+WindSeries wind_of(const FlightSamples& samples, const Air& air) {
+  const Series& heading = *samples.reference.find(Quantity::heading);
+  const Series& speed = *samples.reference.find(Quantity::ground_speed);
+  const Series& track = *samples.reference.find(Quantity::ground_track);
+  const std::size_t size = samples.time.size();
+  const Series unknown(size, nan);
+  WindSeries wind{unknown, unknown, unknown, unknown, unknown, unknown};
+  for (std::size_t i = 0; i < size; ++i) {
+    wind.ground_east[i] = speed[i] * std::sin(track[i] * radians_per_degree);
+    wind.ground_north[i] = speed[i] * std::cos(track[i] * radians_per_degree);
+    if (std::isnan(air.airspeed[i])) continue;
+    const Eigen::Vector2d u = angles_at(samples.motion, heading, air.airspeed, i).direction();
+    wind.east[i] = wind.ground_east[i] - air.airspeed[i] * u[0];
+    wind.north[i] = wind.ground_north[i] - air.airspeed[i] * u[1];
+    wind.level_share[i] = std::hypot(u[0], u[1]);
+    wind.course[i] = std::atan2(u[0], u[1]) / radians_per_degree;
+  }
+  wind.course = unwrapped(std::move(wind.course));
+  for (const FrozenSpan& span : samples.reference.frozen) {
+    for (std::size_t i = span.first; i < span.first + span.count; ++i) wind.east[i] = wind.north[i] = nan;
+  }
+  return wind;
+}
+
 GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
                   const std::vector<std::size_t>& used, const double* parameters,
                   const std::vector<std::size_t>& requested, const AddedEffects& effects) {
   const Air air = air_of(samples, file, parameters);
   const std::size_t size = samples.time.size();
   const Series& heading = *samples.reference.find(Quantity::heading);
-  const Series& ground_speed = *samples.reference.find(Quantity::ground_speed);
-  const Series& ground_track = *samples.reference.find(Quantity::ground_track);
   const Series z = heights(samples, air);
   const double mean_height = mean_of(z);
   const Series airspeed = low_passed(air.airspeed, 45.0 / samples.step);
-
-  Series ground_east(size), ground_north(size), east(size, nan), north(size, nan), course(size, nan),
-      level_share(size, nan);
-  double course_before = nan;
-  for (std::size_t i = 0; i < size; ++i) {
-    ground_east[i] = ground_speed[i] * std::sin(ground_track[i] * radians_per_degree);
-    ground_north[i] = ground_speed[i] * std::cos(ground_track[i] * radians_per_degree);
-    if (std::isnan(air.airspeed[i])) continue;
-    const Eigen::Vector2d u = angles_at(samples.motion, heading, air.airspeed, i).direction();
-    east[i] = ground_east[i] - air.airspeed[i] * u[0];
-    north[i] = ground_north[i] - air.airspeed[i] * u[1];
-    level_share[i] = std::hypot(u[0], u[1]);
-    double now = std::atan2(u[0], u[1]);
-    if (!std::isnan(course_before)) now += 2.0 * M_PI * std::round((course_before - now) / (2.0 * M_PI));
-    course[i] = now;
-    if (!std::isnan(now)) course_before = now;
-  }
-  for (const FrozenSpan& span : samples.reference.frozen) {
-    for (std::size_t i = span.first; i < span.first + span.count; ++i) east[i] = north[i] = nan;
-  }
-  const Series calm_course = low_passed(course, 15.0 / samples.step);
-  const Series calm_share = low_passed(level_share, 15.0 / samples.step);
-  const Series calm_ground_east = low_passed(ground_east, 5.0 / samples.step);
-  const Series calm_ground_north = low_passed(ground_north, 5.0 / samples.step);
+  const WindSeries wind = wind_of(samples, air);
+  const Series calm_course = low_passed(wind.course, 15.0 / samples.step);
+  const Series calm_share = low_passed(wind.level_share, 15.0 / samples.step);
+  const Series calm_ground_east = low_passed(wind.ground_east, 5.0 / samples.step);
+  const Series calm_ground_north = low_passed(wind.ground_north, 5.0 / samples.step);
 
   GpsRows result;
   result.time = samples.time;
-  result.level = gust_level(east, north, samples.time, samples.step);
+  result.level = gust_level(wind.east, wind.north, samples.time, samples.step);
   result.airspeed.resize(size, 0.0);
   result.east.resize(size, 0.0);
   result.north.resize(size, 0.0);
@@ -393,13 +408,13 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
   Eigen::Index number = 0;
   for (const std::size_t i : used) {
-    if (std::isnan(east[i]) || std::isnan(north[i])) continue;
+    if (std::isnan(wind.east[i] + wind.north[i])) continue;
     const Derivatives by = differentiate(i);
     if (!by.airspeed.allFinite()) continue;
     result.defect.row(number++) = by.pressure.head(own);
     const double speed = airspeed[i];
-    const double sine = std::sin(calm_course[i]);
-    const double cosine = std::cos(calm_course[i]);
+    const double sine = std::sin(calm_course[i] * radians_per_degree);
+    const double cosine = std::cos(calm_course[i] * radians_per_degree);
     const double share = calm_share[i];
     result.airspeed[i] = speed;
     result.east[i] = sine;
@@ -437,8 +452,8 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
       to[count + gps_nuisance_count] = residual;
     };
     const double up = std::isnan(above) ? 0.0 : above;
-    fill(as_index(i), sine, cosine, up, 0.0, acceleration_east, east[i]);
-    fill(records + as_index(i), cosine, -sine, 0.0, up, acceleration_north, north[i]);
+    fill(as_index(i), sine, cosine, up, 0.0, acceleration_east, wind.east[i]);
+    fill(records + as_index(i), cosine, -sine, 0.0, up, acceleration_north, wind.north[i]);
   }
   result.defect.conservativeResize(number, own);
   return result;

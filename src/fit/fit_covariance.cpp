@@ -99,6 +99,15 @@ struct StageScores {
   Eigen::MatrixXd columns;
 };
 
+/// The bin at a time; none if the flight has no bin there. Middles of bins differ by less than half the width
+/// if other samples are used. @param middles of the bins, s
+std::optional<Eigen::Index> bin_at(const std::vector<double>& middles, double time) {
+  constexpr double margin = 0.5 * Binning::usual_width;
+  const auto bin = std::lower_bound(middles.begin(), middles.end(), time - margin);
+  if (bin == middles.end() || *bin > time + margin) return std::nullopt;
+  return bin - middles.begin();
+}
+
 /// Columns of all equations in the bins of the last ones, which include the bins of each stage.
 Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector<double>& time,
                        const Eigen::MatrixXd& last, Eigen::Index fitted) {
@@ -106,10 +115,8 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
   all.rightCols(last.cols()) = last;
   for (const StageScores& stage : stages) {
     for (std::size_t i = 0; i < stage.time.size(); ++i) {
-      // Middles of bins differ by less than half the width if other samples are used.
-      auto bin = std::lower_bound(time.begin(), time.end(), stage.time[i] - 0.5 * Binning::usual_width);
-      if (bin == time.end() || *bin > stage.time[i] + Binning::usual_width) continue;
-      all.block(bin - time.begin(), stage.first, 1, stage.columns.cols()) += stage.columns.row(as_index(i));
+      if (const auto bin = bin_at(time, stage.time[i]))
+        all.block(*bin, stage.first, 1, stage.columns.cols()) += stage.columns.row(as_index(i));
     }
   }
   return all;
@@ -131,10 +138,10 @@ double shared_noise(const StaticReference& one, const StaticReference& other) {
     const Eigen::VectorXd& b = other.noise[flight];
     for (Eigen::Index i = 0; i < a.size(); ++i) {
       const double at = one.flights->bins(flight).time()[static_cast<std::size_t>(i)];
-      const auto bin = std::lower_bound(time.begin(), time.end(), at - 0.5 * Binning::usual_width);
-      if (bin == time.end() || *bin > at + 0.5 * Binning::usual_width) continue;
-      const Eigen::Vector2d both(a[i], b[bin - time.begin()]);
-      products += both * both.transpose();
+      if (const auto bin = bin_at(time, at)) {
+        const Eigen::Vector2d both(a[i], b[*bin]);
+        products += both * both.transpose();
+      }
     }
     return products;
   });
@@ -177,122 +184,207 @@ bool is_determined(Eigen::Index coefficient, const Eigen::MatrixXd& rest,
              max_growth * std::abs(all(coefficient, coefficient));
 }
 
+/// Sums of the scores of all equations over the flights and references.
+class ScoreSums {
+ public:
+  ScoreSums(const std::vector<FitEquations>& equations, const Solution& solution, const Misfit& misfit)
+      : solution_(solution),
+        misfit_(misfit),
+        loss_(equations.back().flights->task().options.loss, solution.deviation),
+        last_(equations.back()),
+        main_(*last_.flights),
+        fitted_(as_index(main_.setup().requested.size())),
+        size_(fitted_ + as_index(main_.setup().held.size())),
+        numbers_(equations),
+        doubts_(doubts_of(main_)),
+        blocks_(numbers_.count(), Eigen::MatrixXd::Zero(fitted_, size_ + 1)),
+        covariance_(Eigen::MatrixXd::Zero(fitted_, fitted_)),
+        by_misfit_(Eigen::MatrixXd::Zero(fitted_, MisfitBasis::count())),
+        by_doubt_(Eigen::MatrixXd::Zero(fitted_, as_index(doubts_.size()))),
+        zeros_(main_.share().flights(), Eigen::VectorXd::Zero(fitted_)),
+        stages_(main_.count()) {
+    Eigen::Index first = 0;
+    for (const FitEquations& each : equations) {
+      for (FitFlights* const flights : each.flights->joint()) add(each, *flights, first);
+      first += as_index(each.parameters.size());
+    }
+    for (const Eigen::VectorXd& zero : zeros_)
+      covariance_ += misfit_.between_flights * zero * zero.transpose();
+    covariance_ += shared_covariance(static_references_, fitted_);
+  }
+
+  /// For each block of bins: derivatives of the scores by all parameters, and the scores.
+  const std::vector<Eigen::MatrixXd>& blocks() const { return blocks_; }
+  /// Covariance of the scores by the noise and by the zeros of the flights.
+  const Eigen::MatrixXd& covariance() const { return covariance_; }
+  const Eigen::MatrixXd& by_misfit() const { return by_misfit_; }
+  const Eigen::MatrixXd& by_doubt() const { return by_doubt_; }
+  const std::vector<std::string>& doubts() const { return doubts_; }
+
+ private:
+  /// One set of equations with one reference.
+  struct Part {
+    FitFlights& flights;
+    Eigen::Index first;  // first of its parameters among all
+    Eigen::Index width;
+    bool is_last;
+    bool is_first_reference;
+    bool sees_law;
+    bool shares_noise;                         // static pressure in common with other references
+    std::vector<Eigen::MatrixXd> states{};     // one for each local flight
+    std::vector<Eigen::MatrixXd> by_doubt{};   // columns of the uncertainties of this reference
+    std::vector<Eigen::Index> doubt_places{};  // indices of these uncertainties
+    std::vector<Eigen::VectorXd> noise{};      // residual less misfit
+  };
+
+  void add(const FitEquations& each, FitFlights& flights, Eigen::Index first) {
+    const bool is_last = &each == &last_;
+    Part part{flights,
+              first,
+              as_index(each.parameters.size()),
+              is_last,
+              &flights == each.flights.get(),
+              each.flights->sees_law(flights),
+              is_last && main_.joint().size() > 1 && flights.task().reference.is_static_pressure()};
+    if (part.sees_law) part.states = binned_states(flights);
+    part.noise.resize(part.states.size());
+    add_doubt(part);
+    std::vector<Eigen::MatrixXd> roots;
+    auto block = blocks_.begin();
+    auto zero = zeros_.begin();
+    for (const FlightScores& flight : main_.share().of_each_flight<FlightScores>(
+             [&](std::size_t f) { return scores_of(part, f); }, digest_of(solution_.values))) {
+      covariance_ += flight.covariance;
+      *zero++ += flight.zero;
+      if (part.shares_noise) roots.push_back(covariance_root(flight.covariance));
+      by_misfit_.middleRows(first, part.width) += flight.misfit;
+      by_doubt_.middleRows(first, part.width) += flight.doubt;
+      for (const Eigen::MatrixXd& sums : flight.blocks) block++->middleRows(first, part.width) += sums;
+    }
+    if (part.shares_noise) static_references_.push_back({&flights, std::move(part.noise), std::move(roots)});
+  }
+
+  void add_doubt(Part& part) const {
+    FitFlights& flights = part.flights;
+    if (flights.doubt().empty()) return;
+    part.by_doubt = flights.of_local([&](std::size_t flight, const FitFlight& fit) {
+      const Eigen::MatrixXd columns = flights.doubt().columns(
+          fit.residuals().shared_samples(), fit.kept(),
+          flight_parameters(fit.residuals(), flights.task(), solution_.values).data());
+      return flights.weighted(flight, fit.linear_rows().bin_means(flights.bins(flight), columns));
+    });
+    for (const std::string& name : flights.doubt().names())
+      part.doubt_places.push_back(std::find(doubts_.begin(), doubts_.end(), name) - doubts_.begin());
+  }
+
+  /// Also keeps the scores of a stage for the last equations, and the noise of the flight.
+  FlightScores scores_of(Part& part, std::size_t flight) {
+    FitFlights& flights = part.flights;
+    FlightScores scores{{},
+                        Eigen::MatrixXd::Zero(fitted_, fitted_),
+                        Eigen::VectorXd::Zero(fitted_),
+                        Eigen::MatrixXd::Zero(part.width, by_misfit_.cols()),
+                        Eigen::MatrixXd::Zero(part.width, by_doubt_.cols())};
+    scores.blocks.assign(numbers_.count(flight), Eigen::MatrixXd::Zero(part.width, size_ + 1));
+    const std::vector<double>& time = flights.bins(flight).time();
+    if (time.empty()) return scores;
+    const FitRows rows = flights.rows(flight, solution_.values, loss_);
+    const Eigen::VectorXd weight = loss_.weights(rows.innovations);
+    double slope = 0.0;  // derivative of the influence, mean over the bins
+    for (const double innovation : rows.innovations) {
+      const std::array<double, 3> rho = loss_(innovation);
+      slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(time.size());
+    }
+    const Eigen::MatrixXd columns = rows.without_offsets(rows.columns, weight);
+    const Eigen::MatrixXd left = columns.middleCols(part.first, part.width);
+    const Eigen::MatrixXd weighted = flights.weighted(flight, weight.asDiagonal() * left);
+    if (part.is_last) {
+      const Eigen::MatrixXd all = joined(
+          part.is_first_reference ? stages_[flight] : std::vector<StageScores>(), time, weighted, fitted_);
+      scores.covariance = noise_covariance(all, flights.bins(flight), flights.noise(flight), 0);
+      if (part.sees_law) scores.zero = all.colwise().sum();
+    } else {
+      stages_[flight].push_back({part.first, time, weighted});
+    }
+    if (part.sees_law) scores.misfit = weighted.transpose() * misfit_.bumps(part.states[flight]);
+    if (part.shares_noise)
+      part.noise[flight] = flights.residual(flight, solution_.values) - misfit_.at(part.states[flight]);
+    if (!part.by_doubt.empty())
+      scores.doubt(Eigen::all, part.doubt_places) = slope * left.transpose() * part.by_doubt[flight];
+    for (Eigen::Index i = 0; i < left.rows(); ++i) {
+      Eigen::MatrixXd& block = scores.blocks[numbers_(flight, time[static_cast<std::size_t>(i)])];
+      block.leftCols(size_) += slope * left.row(i).transpose() * columns.row(i);
+      block.col(size_) += weight[i] * rows.innovations[i] * left.row(i).transpose();
+    }
+    return scores;
+  }
+
+  const Solution& solution_;
+  const Misfit& misfit_;
+  const ScaledLoss loss_;
+  const FitEquations& last_;
+  FitFlights& main_;
+  const Eigen::Index fitted_;
+  const Eigen::Index size_;  // fitted parameters, and fixed ones with an error
+  const Blocks numbers_;
+  const std::vector<std::string> doubts_;
+  std::vector<Eigen::MatrixXd> blocks_;
+  Eigen::MatrixXd covariance_;
+  Eigen::MatrixXd by_misfit_;
+  Eigen::MatrixXd by_doubt_;
+  std::vector<Eigen::VectorXd> zeros_;            // one for each flight
+  std::vector<std::vector<StageScores>> stages_;  // one for each local flight, first reference
+  std::vector<StaticReference> static_references_{};
+};
+
+/// Jackknife errors of coefficients: one Newton step from the fit of all blocks to the fit without one block.
+/// Infinite if one block alone determines a coefficient. @param varying coefficients that are not at a bound
+/// @param equations of these coefficients @param scale of `scaled_inverse`
+Eigen::VectorXd jackknife_errors(const std::vector<Eigen::MatrixXd>& blocks,
+                                 const std::vector<Eigen::Index>& varying, const Eigen::MatrixXd& equations,
+                                 const Eigen::MatrixXd& inverse, const Eigen::VectorXd& scale) {
+  Eigen::MatrixXd changes(as_index(varying.size()), as_index(blocks.size()));
+  Eigen::VectorXd undetermined = Eigen::VectorXd::Zero(changes.rows());  // infinite or zero
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Eigen::MatrixXd rest = equations - blocks[b](varying, varying);
+    const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
+    changes.col(as_index(b)) = inverse_of_rest * blocks[b].rightCols<1>()(varying);
+    for (Eigen::Index k = 0; k < changes.rows(); ++k) {
+      if (!is_determined(k, rest, inverse_of_rest, inverse)) undetermined[k] = infinity;
+    }
+  }
+  const auto count = static_cast<double>(blocks.size());
+  changes.colwise() -= changes.rowwise().mean().eval();
+  return (changes.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt() + undetermined;
+}
+
 }  // namespace
 
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Solution& solution,
                              const Misfit& misfit) {
-  const FitEquations& last = equations.back();
-  FitFlights& main = *last.flights;
+  const FitFlights& main = *equations.back().flights;
   const FitTask& task = main.task();
   const std::vector<std::size_t>& parameters = main.setup().requested;
   const Eigen::Index fitted = as_index(parameters.size());
   const Eigen::Index size = fitted + as_index(main.setup().held.size());
-  const Blocks blocks(equations);
-  const std::vector<std::string> doubts = doubts_of(main);
-  std::vector<Eigen::MatrixXd> excluded(blocks.count(), Eigen::MatrixXd::Zero(fitted, size + 1));
-  Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
-  Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitBasis::count());
-  Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
-  std::vector<Eigen::VectorXd> zeros(main.share().flights(), Eigen::VectorXd::Zero(fitted));
-  std::vector<StaticReference> alike;
-  std::vector<std::vector<StageScores>> stages(main.count());  // one for each local flight, first reference
-  const Eigen::VectorXd& values = solution.values;
-  const ScaledLoss loss(task.options.loss, solution.deviation);
-  Eigen::Index first = 0;
-  for (const FitEquations& each : equations) {
-    const Eigen::Index width = as_index(each.parameters.size());
-    for (FitFlights* const flights : each.flights->joint()) {
-      const bool is_first_reference = flights == each.flights.get();
-      const bool is_alike =
-          &each == &last && main.joint().size() > 1 && flights->task().reference.is_static_pressure();
-      const bool sees_law = each.flights->sees_law(*flights);
-      const std::vector<Eigen::MatrixXd> states =
-          sees_law ? binned_states(*flights) : std::vector<Eigen::MatrixXd>();
-      std::vector<Eigen::VectorXd> noise(states.size());
-      std::vector<Eigen::MatrixXd> doubted;
-      std::vector<Eigen::Index> doubt_places;  // indices of the uncertainties of this reference
-      if (!flights->doubt().empty()) {
-        doubted = flights->of_local([&](std::size_t flight, const FitFlight& fit) {
-          const Eigen::MatrixXd columns =
-              flights->doubt().columns(fit.residuals().shared_samples(), fit.kept(),
-                                       flight_parameters(fit.residuals(), flights->task(), values).data());
-          return flights->weighted(flight, fit.linear_rows().bin_means(flights->bins(flight), columns));
-        });
-      }
-      for (const std::string& name : flights->doubt().names())
-        doubt_places.push_back(std::find(doubts.begin(), doubts.end(), name) - doubts.begin());
-      const auto scores_of = [&](std::size_t flight) {
-        FlightScores scores{{},
-                            Eigen::MatrixXd::Zero(fitted, fitted),
-                            Eigen::VectorXd::Zero(fitted),
-                            Eigen::MatrixXd::Zero(width, by_misfit.cols()),
-                            Eigen::MatrixXd::Zero(width, by_doubt.cols())};
-        scores.blocks.assign(blocks.count(flight), Eigen::MatrixXd::Zero(width, size + 1));
-        const std::vector<double>& time = flights->bins(flight).time();
-        if (time.empty()) return scores;
-        const FitRows rows = flights->rows(flight, values, loss);
-        const Eigen::VectorXd weight = loss.weights(rows.innovations);
-        double slope = 0.0;  // derivative of the influence, mean over the bins
-        for (const double innovation : rows.innovations) {
-          const std::array<double, 3> rho = loss(innovation);
-          slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(time.size());
-        }
-        const Eigen::MatrixXd columns = rows.without_offsets(rows.columns, weight);
-        const Eigen::MatrixXd left = columns.middleCols(first, width);
-        const Eigen::MatrixXd weighted = flights->weighted(flight, weight.asDiagonal() * left);
-        if (&each == &last) {
-          const Eigen::MatrixXd joint = joined(
-              is_first_reference ? stages[flight] : std::vector<StageScores>(), time, weighted, fitted);
-          scores.covariance = noise_covariance(joint, flights->bins(flight), flights->noise(flight), 0);
-          if (sees_law) scores.zero = joint.colwise().sum();
-        } else {
-          stages[flight].push_back({first, time, weighted});
-        }
-        if (is_alike) noise[flight] = flights->residual(flight, values) - misfit.at(states[flight]);
-        if (sees_law) scores.misfit = weighted.transpose() * misfit.bumps(states[flight]);
-        if (!doubted.empty())
-          scores.doubt(Eigen::all, doubt_places) = slope * left.transpose() * doubted[flight];
-        for (Eigen::Index i = 0; i < left.rows(); ++i) {
-          Eigen::MatrixXd& block = scores.blocks[blocks(flight, time[static_cast<std::size_t>(i)])];
-          block.leftCols(size) += slope * left.row(i).transpose() * columns.row(i);
-          block.col(size) += weight[i] * rows.innovations[i] * left.row(i).transpose();
-        }
-        return scores;
-      };
-      auto block = excluded.begin();
-      std::vector<Eigen::MatrixXd> roots;
-      std::size_t number = 0;
-      for (const FlightScores& flight :
-           main.share().of_each_flight<FlightScores>(scores_of, digest_of(values))) {
-        score += flight.covariance;
-        zeros[number++] += flight.zero;
-        if (is_alike) roots.push_back(covariance_root(flight.covariance));
-        by_misfit.middleRows(first, width) += flight.misfit;
-        by_doubt.middleRows(first, width) += flight.doubt;
-        for (const Eigen::MatrixXd& sums : flight.blocks) block++->middleRows(first, width) += sums;
-      }
-      if (is_alike) alike.push_back({flights, std::move(noise), std::move(roots)});
-    }
-    first += width;
-  }
-  for (const Eigen::VectorXd& zero : zeros) score += misfit.between_flights * zero * zero.transpose();
-  score += shared_covariance(alike, fitted);
+  const ScoreSums sums(equations, solution, misfit);
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
-  for (const Eigen::MatrixXd& block : excluded) derivatives += block.leftCols(size);
+  for (const Eigen::MatrixXd& block : sums.blocks()) derivatives += block.leftCols(size);
   const PriorRows prior = prior_rows(task, parameters);
   const double unit = solution.deviation * solution.deviation;
   derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
-  score += unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
+  const Eigen::MatrixXd score =
+      sums.covariance() + unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
 
   FitCovariance found;
   found.information = main.share().sum_of_each_flight<double>(
       [&](std::size_t flight) { return information_about_mean(main.bins(flight), main.noise(flight)); });
-  found.blocks = excluded.size();
+  found.blocks = sums.blocks().size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
   found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted, fitted);
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
-  const Eigen::MatrixXd doubt = task.doubt(main.setup().held, main.setup().held);
-  found.matrix.bottomRightCorner(size - fitted, size - fitted) = doubt;
+  const Eigen::MatrixXd fixed = task.doubt(main.setup().held, main.setup().held);
+  found.matrix.bottomRightCorner(size - fitted, size - fitted) = fixed;
   // Parameters at a bound have no variance.
   std::vector<Eigen::Index> varying;
   for (Eigen::Index k = 0; k < fitted; ++k) {
@@ -303,43 +395,28 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const S
   const Eigen::VectorXd scale =
       equations_of_all.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse = scaled_inverse(equations_of_all, scale);
-  const Eigen::MatrixXd carried = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
+  const Eigen::MatrixXd by_fixed = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
   Eigen::MatrixXd covariance = inverse * score(varying, varying) * inverse.transpose();
-  const Eigen::MatrixXd by_held = carried * doubt * carried.transpose();
-  found.by_noise(varying, varying) = covariance + by_held;
+  const Eigen::MatrixXd from_fixed = by_fixed * fixed * by_fixed.transpose();
+  found.by_noise(varying, varying) = covariance + from_fixed;
   if (misfit.variance.size() > 0) {
-    const Eigen::MatrixXd moved = inverse * by_misfit(varying, Eigen::all);
-    covariance += moved * misfit.variance.asDiagonal() * moved.transpose();
+    const Eigen::MatrixXd by_misfit = inverse * sums.by_misfit()(varying, Eigen::all);
+    covariance += by_misfit * misfit.variance.asDiagonal() * by_misfit.transpose();
   }
   // Fitted coefficients compensate errors of fixed ones, on all flights alike.
   found.by_flights(varying, varying) = covariance;
-  covariance += by_held;
-  const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
-  covariance += by_one * by_one.transpose();
-  found.doubts = doubts;
-  found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_one.cols());
-  found.by_doubt(varying, Eigen::all) = by_one;
+  covariance += from_fixed;
+  const Eigen::MatrixXd by_doubt = -inverse * sums.by_doubt()(varying, Eigen::all);
+  covariance += by_doubt * by_doubt.transpose();
+  found.doubts = sums.doubts();
+  found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_doubt.cols());
+  found.by_doubt(varying, Eigen::all) = by_doubt;
   found.matrix(varying, varying) = 0.5 * (covariance + covariance.transpose());
-  const Eigen::MatrixXd across = carried * doubt;
+  const Eigen::MatrixXd across = by_fixed * fixed;
   found.matrix.rightCols(size - fitted)(varying, Eigen::all) = across;
   found.matrix.bottomRows(size - fitted)(Eigen::all, varying) = across.transpose();
-
-  // One Newton step from the fit of all blocks to the fit without one block.
-  Eigen::MatrixXd moved(as_index(varying.size()), as_index(excluded.size()));
-  Eigen::VectorXd decided = Eigen::VectorXd::Zero(moved.rows());  // infinite if one block alone determines it
-  for (std::size_t b = 0; b < excluded.size(); ++b) {
-    const Eigen::MatrixXd rest = equations_of_all - excluded[b](varying, varying);
-    const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
-    moved.col(as_index(b)) = inverse_of_rest * excluded[b].col(size)(varying);
-    for (Eigen::Index k = 0; k < moved.rows(); ++k) {
-      if (!is_determined(k, rest, inverse_of_rest, inverse)) decided[k] = infinity;
-    }
-  }
-  const auto count = static_cast<double>(excluded.size());
-  moved.colwise() -= moved.rowwise().mean().eval();
-  const Eigen::VectorXd errors =
-      (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt() + decided;
-  if (excluded.size() > 2) found.jackknife(varying) = errors;
+  if (sums.blocks().size() > 2)
+    found.jackknife(varying) = jackknife_errors(sums.blocks(), varying, equations_of_all, inverse, scale);
   return found;
 }
 
