@@ -43,7 +43,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 14> costs{{
      "circles, reverse headings and yaw manoeuvres are found by the ground track, if that is recorded"},
     {"ground_speed", "winds cannot be compared"},
     {"ground_track", "winds cannot be compared"},
-    {"flaps", "samples with flaps out are found by the lift alone"},
+    {"flaps", "extended flaps are inferred from the lift"},
     {"liquid_water", "clouds are not found"},
     {"latitude", "standard gravity is used, and the slope of isobars is unknown"},
 }};
@@ -244,10 +244,10 @@ class Look {
         evidence_["other_altitude"].push_back(each);
       } else if (!says_geometric(flight_.variable(each.variable))) {
         each.score = std::min(each.score, sure_score - 0.01);
-        result_.notes.push_back(
-            fmt::format("{} may be a GPS height or a pressure altitude: {}; it is not used; if it is a GPS "
-                        "height, write altitude = \"{}\" into the [variables] of the model",
-                        each.variable, to_string(evidence), each.variable));
+        result_.notes.push_back(fmt::format(
+            "write altitude = \"{0}\" into [variables] of the model if {0} is a GPS height; {0} is "
+            "not used because it may be a pressure altitude: {1}",
+            each.variable, to_string(evidence)));
       }
     }
     candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
@@ -325,7 +325,8 @@ class Look {
   void add_roles_by_evidence(ModelDefinition& model) {
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     // A model has one temperature and one humidity.
-    const auto has_another = [&has](Quantity role, std::initializer_list<Quantity> alike) {
+    constexpr std::array temperatures{Quantity::recovery_temperature, Quantity::ambient_temperature};
+    const auto has_another = [&has](Quantity role, const auto& alike) {
       return std::find(alike.begin(), alike.end(), role) != alike.end() &&
              std::any_of(alike.begin(), alike.end(), has);
     };
@@ -335,17 +336,14 @@ class Look {
       const RoleCandidate* const candidate = sure_candidate(name);
       const bool is_known = !result_.alike.empty() && !first_with_values(flight_, family_, name).empty();
       const bool is_chosen =
-          has(role) || is_known ||
-          has_another(role, {Quantity::recovery_temperature, Quantity::ambient_temperature}) ||
-          has_another(role, {Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point});
+          has(role) || is_known || has_another(role, temperatures) || has_another(role, humidity_roles);
       if (candidate == nullptr || is_chosen) continue;
       const bool plays_a_role =
           std::any_of(model.variables.begin(), model.variables.end(),
                       [&](const auto& each) { return each.second == candidate->variable; });
       if (!plays_a_role) model.variables[role] = candidate->variable;
     }
-    model.model.moist =
-        has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
+    model.model.moist = std::any_of(humidity_roles.begin(), humidity_roles.end(), has);
   }
 
   /// Whether a variable belongs to a pair from the flight's own processing, by the aircraft's names.
@@ -428,10 +426,9 @@ class Look {
     if (!result_.model || has_law || !is_by_gps || (result_.by_gps && result_.by_gps->determines_level()))
       return;
     result_.notes.push_back(warning_note(fmt::format(
-        "neither a laser, a second static system nor {} the level of delta-p: a refit keeps its starting "
-        "value",
-        result_.by_gps && result_.by_gps->by_wind ? "circles or reverse headings determine"
-                                                  : "the wind by GPS determines")));
+        "a refit keeps the level of delta-p of the input model: the level needs a "
+        "laser, a second static system or {}",
+        result_.by_gps && result_.by_gps->by_wind ? "circles or reverse headings" : "wind by GPS")));
   }
 
   /// The part of a series that has values.

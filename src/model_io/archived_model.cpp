@@ -42,13 +42,10 @@ std::string archived_model(const ModelDefinition& model, CorrectWith correct_wit
   result.model.aircraft.clear();
   result.model.domain.clear();
   result.recovery_factor_name = bare.recovery_factor_name;
-  constexpr std::array always{Quantity::static_pressure,      Quantity::dynamic_pressure,
-                              Quantity::recovery_temperature, Quantity::ambient_temperature,
-                              Quantity::vapor_pressure,       Quantity::dew_point,
-                              Quantity::frost_point,          Quantity::lams_airspeed};
   const std::vector<std::string>& in_formulas = chain->extra_names();
   for (const auto& [role, variable] : bare.variables) {
-    const bool counts = chain->needs(role) || std::find(always.begin(), always.end(), role) != always.end() ||
+    const bool counts = chain->needs(role) || is_always_read(role) || role == Quantity::static_pressure ||
+                        role == Quantity::dynamic_pressure ||
                         std::find(in_formulas.begin(), in_formulas.end(), variable) != in_formulas.end();
     if (!counts) continue;
     result.variables[role] = variable;

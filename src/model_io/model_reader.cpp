@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <locale>
 #include <sstream>
 
@@ -149,7 +148,7 @@ class Reader final : TomlReader {
            fmt::format("'static_pressure' and 'dynamic_pressure' are both {}; give each its own variable",
                        quote(file_.variables.at(Quantity::static_pressure))));
     }
-    give_one({Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}, "the humidity");
+    give_one({humidity_roles.begin(), humidity_roles.end()}, "the humidity");
     if (file_.model.lams.approach != LamsApproach::with_temperature) {
       give_one({Quantity::recovery_temperature, Quantity::ambient_temperature},
                "the temperature, except with [lams] approach = 3, which uses the ambient temperature");
@@ -157,7 +156,7 @@ class Reader final : TomlReader {
   }
 
   // Error if more than one of `roles` has a variable.
-  void give_one(std::initializer_list<Quantity> roles, std::string_view what) const {
+  void give_one(const std::vector<Quantity>& roles, std::string_view what) const {
     std::vector<Quantity> given;
     for (const Quantity role : roles) {
       if (file_.variables.count(role) != 0) given.push_back(role);

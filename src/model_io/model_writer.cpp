@@ -138,8 +138,7 @@ class Writer {
       heading("[temperature]");
       line("recovery_factor", recovery_factor(file));
     }
-    if (has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point) ||
-        !model.moist) {
+    if (std::any_of(humidity_roles.begin(), humidity_roles.end(), has) || !model.moist) {
       heading("[humidity]");
       line("moist", model.moist ? "true" : "false");
     }

@@ -41,8 +41,7 @@ std::optional<ModelDefinition> recorded_model(const Flight& flight) {
       model.model.recovery = published_recovery_factor(thermometer->recovery)->law;
     }
   }
-  model.model.moist =
-      take(Quantity::vapor_pressure) || take(Quantity::dew_point) || take(Quantity::frost_point);
+  model.model.moist = std::any_of(humidity_roles.begin(), humidity_roles.end(), take);
   return model;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -26,12 +27,13 @@ class Completion {
   ModelDefinition complete(Notes& notes) {
     take_pressures();
     take_temperature();
-    if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
-      if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && !take(Quantity::frost_point) &&
-          file_.model.moist) {
-        file_.model.moist = false;
-        traps_.emplace_back("no humidity is recorded: the air is assumed dry");
-      }
+    if (std::none_of(humidity_roles.begin(), humidity_roles.end(),
+                     [this](Quantity role) { return has(role); }) &&
+        std::none_of(humidity_roles.begin(), humidity_roles.end(),
+                     [this](Quantity role) { return take(role); }) &&
+        file_.model.moist) {
+      file_.model.moist = false;
+      traps_.emplace_back("no humidity is recorded: the air is assumed dry");
     }
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);
@@ -51,7 +53,7 @@ class Completion {
     if (role == Quantity::sideslip) return file_.model.sideslip_radome.is_calibrated();
     if (role == Quantity::ambient_temperature)
       return file_.model.lams.approach != LamsApproach::with_temperature;
-    return role == Quantity::vapor_pressure || role == Quantity::dew_point || role == Quantity::frost_point;
+    return is_humidity(role);
   }
 
   bool has(Quantity role) const { return file_.variables.count(role) != 0; }

@@ -29,11 +29,9 @@ constexpr double dry_above = 5000.0;  // m; above it vapour makes less than 0.2 
 /// The part of a thickness that vapour makes in the driest air below: 0.03 hPa at 600 hPa.
 constexpr double min_part = 1e-5;
 
-constexpr std::array humidities{Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point};
-
 /// [variables] and [humidity] that would make the air moist.
 std::string remedy(const ModelDefinition& model, const Flight& flight) {
-  for (const Quantity role : humidities) {
+  for (const Quantity role : humidity_roles) {
     const auto named = model.variables.find(role);
     if (named == model.variables.end()) continue;
     if (!model.model.moist) return "give the model [humidity] moist = true";
@@ -41,7 +39,7 @@ std::string remedy(const ModelDefinition& model, const Flight& flight) {
                        named->second);
   }
   const VariableNaming& family = family_of(model, flight);
-  for (const Quantity role : humidities) {
+  for (const Quantity role : humidity_roles) {
     for (const std::string& variable : family.names_of(info_of(role).name)) {
       if (has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable)))
         return fmt::format(

@@ -64,7 +64,9 @@ void leave_out_unreadable(std::vector<std::string>& flights) {
 }  // namespace
 
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
-  command.add_option("FLIGHT.nc", options.flights, "the flights, netCDF files")->required()->type_name("");
+  command.add_option("FLIGHT.nc", options.flights, "the flights, netCDF or ICARTT files")
+      ->required()
+      ->type_name("");
   add_list_option(command, "--exclude", options.exclude, "exclude a flight regime, e.g. turn or cloud")
       ->type_name("REGIME");
   command
@@ -194,10 +196,7 @@ namespace {
 
 /// Whether `process` reads a role. Other roles of the model serve comparisons, such as the true airspeed.
 bool is_processed(const std::optional<Chain>& chain, Quantity role) {
-  constexpr std::array<Quantity, 6> air{Quantity::recovery_temperature, Quantity::ambient_temperature,
-                                        Quantity::vapor_pressure,       Quantity::dew_point,
-                                        Quantity::frost_point,          Quantity::lams_airspeed};
-  return !chain || chain->needs(role) || std::find(air.begin(), air.end(), role) != air.end();
+  return !chain || chain->needs(role) || is_always_read(role);
 }
 
 /// Variables that `process` reads with a model, and names in its formulas.

@@ -254,4 +254,18 @@ inline constexpr double flaps_in = 5.0;
 
 constexpr bool is_role(Quantity quantity) { return index(quantity) < role_count; }
 
+/// Recorded humidities; a model has at most one of them. The preferred one is the first.
+inline constexpr std::array<Quantity, 3> humidity_roles{Quantity::vapor_pressure, Quantity::dew_point,
+                                                        Quantity::frost_point};
+
+constexpr bool is_humidity(Quantity quantity) {
+  return quantity == humidity_roles[0] || quantity == humidity_roles[1] || quantity == humidity_roles[2];
+}
+
+/// Roles that `process` reads even if delta-p does not need them: temperature, humidity and laser airspeed.
+constexpr bool is_always_read(Quantity quantity) {
+  return is_humidity(quantity) || quantity == Quantity::recovery_temperature ||
+         quantity == Quantity::ambient_temperature || quantity == Quantity::lams_airspeed;
+}
+
 }  // namespace pcor

@@ -60,9 +60,7 @@ inline Quantities read_of_air(const Chain& chain) {
 inline Quantities read_of_airspeed(const Chain& chain) {
   Quantities read;
   for (const Quantity input : chain.inputs()) {
-    const bool is_humidity =
-        input == Quantity::vapor_pressure || input == Quantity::dew_point || input == Quantity::frost_point;
-    if (is_humidity || chain.needs(input)) read.push_back(input);
+    if (is_humidity(input) || chain.needs(input)) read.push_back(input);
   }
   return read;
 }
