@@ -57,15 +57,16 @@ constexpr Figure figures[] = {
     {"static-pressure", Figure::Kind::pair, "Static pressures of the two systems",
      "The line is an orthogonal fit.", "", "", "two", "one"},
     {"reverse-heading", Figure::Kind::bars, "Error of the airspeed from each reverse heading",
-     "Error bars include the typical change of the wind between two legs.",
-     "airspeed minus airspeed of the headings", "m/s"},
+     "Airspeed minus that of the headings; error bars include the typical change of the wind between two "
+     "legs.",
+     "error of the airspeed", "m/s"},
     {"reverse-heading", Figure::Kind::over_time, "Tail wind on the legs",
      "Wind along the aircraft's axis. It has opposite signs on the two legs of a pair; an error of the "
      "airspeed has the same sign.",
      "", "", "tail wind"},
     {"circles", Figure::Kind::bars, "Error of the airspeed from each circle",
-     "Error bars include the typical drift of the wind during a circle.",
-     "airspeed minus airspeed of the circle", "m/s"},
+     "Airspeed minus that of the circle; error bars include the typical drift of the wind during a circle.",
+     "error of the airspeed", "m/s"},
     {"circles", Figure::Kind::against, "Residual of the circle fit",
      "Ground speed along the heading minus wind, airspeed and its error. A wave over the heading indicates a "
      "wind that changed during the circle.",
@@ -216,9 +217,10 @@ Report check_report(const Checks& checks) {
   const std::size_t ran = consistent + inconclusive + inconsistent.size();
   report.title = !inconsistent.empty() ? fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(),
                                                      ran, fmt::join(inconsistent, ", "))
-                 : inconclusive > 0    ? fmt::format("{} of {} checks inconclusive", inconclusive, ran)
-                 : consistent > 0      ? "No check is inconsistent"
-                                       : "No check ran";
+                 : inconclusive > 0 ? fmt::format("No check contradicts the model; {} of {} are inconclusive",
+                                                  inconclusive, ran)
+                 : consistent > 0   ? "No check contradicts the model"
+                                    : "No check ran";
   report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
   report.summary.insert(
       report.summary.begin(),

@@ -103,7 +103,7 @@ Part part_of(const Differences& all, std::string name, const Condition& conditio
 ReportTable part_table(const std::vector<Part>& parts) {
   ReportTable table{"Laser temperature minus thermometer",
                     "Errors include autocorrelation and slow drift of the differences.",
-                    {"where", "samples", "mean, K", "std. error", "scatter, K"}};
+                    {"where", "samples", "mean, K", "std. error, K", "scatter, K"}};
   for (const Part& part : parts) {
     if (part.fit.samples < min_samples) continue;
     table.rows.push_back(
@@ -164,9 +164,10 @@ void add_noise_by_period(const Differences& all, CheckResult& result) {
 
 /// The clouds, with the state of the laser there; the last cell of a suspect one has a remark.
 ReportTable cloud_table(const CheckedFlights& flights, double outside) {
-  ReportTable table{"Clouds",
-                    "ATLAMS minus the thermometer in each cloud of 30 samples or more.",
-                    {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"}};
+  ReportTable table{
+      "Clouds",
+      "ATLAMS minus the thermometer in each cloud of 30 samples or more.",
+      {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error, K", "remark"}};
   for (const Flown& cloud : all_flown(flights, Regime::cloud)) {
     const FlightAir& air = cloud.flight->air;
     if (!air.laser || air.temperature.empty() || cloud.records.size() < min_in_cloud) continue;

@@ -88,7 +88,8 @@ ReportTable table_of(const RedundantFit& fit, std::string title) {
       std::move(title),
       "Standard errors include autocorrelation and slow drift of the differences. The offset is the value at "
       "0 hPa.",
-      {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"}};
+      {"fit", "slope", "std. error of the slope", "offset, hPa", "std. error of the offset, hPa",
+       "rms, hPa"}};
   const auto row = [&](const char* name, const LineFit& line) {
     table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),
                           fmt::format("{:+.3f}", line.offset), fmt::format("{:.3f}", line.offset_error),

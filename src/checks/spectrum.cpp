@@ -24,7 +24,8 @@ constexpr double margin = 2.0;               // standard errors
 
 /// Series of the spectrum.
 struct Source {
-  std::string name;  ///< "delta-p from LAMS"
+  std::string name;   ///< "delta-p from LAMS"
+  std::string title;  ///< label of an axis
   std::vector<double> (*series)(const CheckedFlight& flight);
 };
 
@@ -161,9 +162,9 @@ double coarsest_step(const CheckedFlights& flights) {
 
 CheckResult check_spectrum(const CheckedFlights& flights) {
   if (flights.empty()) return not_run("there is no flight");
-  const std::vector<Source> sources{{"delta-p from LAMS", laser_defect},
-                                    {"the difference of the two static systems", second_system},
-                                    {"the D-value as a pressure", d_value_as_pressure}};
+  const std::vector<Source> sources{{"delta-p from LAMS", "delta-p", laser_defect},
+                                    {"the difference of the two static systems", "difference", second_system},
+                                    {"the D-value as a pressure", "D-value", d_value_as_pressure}};
   Spectrum spectrum;
   const Source* source = nullptr;
   for (const Source& each : sources) {
@@ -215,7 +216,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   ReportTable table{"Power by period: numbers",
                     fmt::format("Spectrum of {}, over {} segments of {} samples.", source->name,
                                 spectrum.periodograms.size(), segment_length),
-                    {"periods, s", "rms, hPa", "std. error"}};
+                    {"periods", "rms, hPa", "std. error, hPa"}};
   for (const Octave& octave : octaves) {
     const std::string periods = fmt::format("{:.3g} to {:.3g} s", octave.shortest, octave.longest);
     table.rows.push_back(
@@ -223,7 +224,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
     result.bars.push_back({periods, octave.rms.value, octave.rms.error});
   }
   result.tables = {std::move(table)};
-  result.columns = {column_of(flights, "spectrum series", source->name, "hPa", source->series)};
+  result.columns = {column_of(flights, "spectrum series", source->title, "hPa", source->series)};
   return result;
 }
 

@@ -27,8 +27,8 @@ std::string reason_of(const TestStatistic& key) {
                        magnitude + likely * key.standard_error, key.unit, words, key.matters, key.unit);
   };
   const auto above = [&](const char* words) {
-    return fmt::format("above the tolerance of {:g} {}{} above three standard errors, {:.3f}", key.matters,
-                       key.unit, words, significant * key.standard_error);
+    return fmt::format("above the tolerance of {0:g} {1}{2} above three standard errors, {3:.3f} {1}",
+                       key.matters, key.unit, words, significant * key.standard_error);
   };
   const std::string why = key.verdict == CheckVerdict::inconsistent ? above(" and")
                           : key.verdict == CheckVerdict::consistent ? within("within")

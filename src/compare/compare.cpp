@@ -324,10 +324,10 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
         each.reference->is_static_pressure() ? each.reference->model() : nullptr;
     const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
     if (other == nullptr || own.empty() || other->variable_of(Quantity::static_pressure) != own) continue;
-    result.notes.push_back(warning_note(
-        fmt::format("the reference {} has the static pressure {} of the model '{}': the residual is the "
-                    "difference of two laws and tests neither; give a system with another static pressure",
-                    each.reference->name(), own, each.compared->name)));
+    result.notes.push_back(
+        warning_note(fmt::format("give a reference with another static pressure: {} uses {}, as the model "
+                                 "does; the residual of '{}' is the difference of two laws and tests neither",
+                                 each.reference->name(), own, each.compared->name)));
   }
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     add_variances(m, flights.share(), records, threads, parts);

@@ -33,12 +33,28 @@ std::vector<std::size_t> used(const FlightResiduals& flight) {
   return records;
 }
 
-/// A title with the name of the model, if there are several.
-std::string title_of(const std::string& what, const Comparison& comparison, const ModelComparison& model) {
-  return comparison.models.size() == 1 ? what : what + ", " + model.name;
+bool has_long_name(const ModelComparison& model) {
+  constexpr std::size_t max_name = 32;
+  return model.name.size() > max_name;
 }
 
 }  // namespace
+
+bool ComparisonPanels::are_numbered() const {
+  const std::vector<ModelComparison>& models = comparison_.models;
+  return models.size() > 1 && std::any_of(models.begin(), models.end(), has_long_name);
+}
+
+std::string ComparisonPanels::label_of_model(const ModelComparison& model) const {
+  if (!are_numbered()) return model.name;
+  const auto found = std::find_if(comparison_.models.begin(), comparison_.models.end(),
+                                  [&model](const ModelComparison& each) { return each.name == model.name; });
+  return fmt::format("model {}", found - comparison_.models.begin() + 1);
+}
+
+std::string ComparisonPanels::title_of(const std::string& what, const ModelComparison& model) const {
+  return comparison_.models.size() == 1 ? what : what + ", " + label_of_model(model);
+}
 
 template <class Series>
 void ComparisonPanels::add(const std::string& name, const std::string& title, const Series& series) {
@@ -50,7 +66,7 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
   using F = FlightResiduals;
   using V = std::vector<double>;
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-    add(residual_column(m), title_of("residual", comparison, comparison.models[m]),
+    add(residual_column(m), title_of("residual", comparison.models[m]),
         [m](const F& f) -> const V& { return f.values[m]; });
     residuals_.push_back(residual_column(m));
   }
@@ -74,7 +90,8 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
   defects_.emplace_back("wanted");
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {
     const std::string name = fmt::format("model{}", m + 1);
-    const std::string title = comparison.models.size() == 1 ? "the model" : comparison.models[m].name;
+    const std::string title =
+        comparison.models.size() == 1 ? "the model" : label_of_model(comparison.models[m]);
     if (variable(name, "delta-p, " + title, "hPa",
                  [m](const F& f) -> const V& { return f.model_defects[m]; }))
       defects_.push_back(name);
@@ -86,20 +103,22 @@ void ComparisonPanels::add_panels() {
   const ModelComparison& last = comparison_.models.back();
   report().items.emplace_back(TimePanel{
       "Residual in time", "Residual: reference minus model; regimes are shaded.", residuals_, "residual"});
+  add_model_table();
   add_strip(report());
   report().items.emplace_back(
       RegimeTable{"By regime", "Bias and rms of the residual in each regime.", residuals_});
   add_regimes(report(), residuals_);
-  report().items.emplace_back(BinnedPanel{
-      "Residual against a variable",
-      "A slope or curvature larger than the error bars indicates a missing effect or a wrong coefficient.",
-      residuals_, variables_, std::max(1.0, last.autocorrelation_time), "residual"});
+  report().items.emplace_back(BinnedPanel{"Residual against a variable",
+                                          "A slope or curvature larger than the error bars indicates a "
+                                          "missing effect, a wrong coefficient or slow drift.",
+                                          residuals_, variables_,
+                                          noise_autocorrelation(report(), residuals_.back()), "residual"});
   report().items.emplace_back(
-      PlanePanel{title_of("Residual over Mach number and pressure", comparison_, last),
+      PlanePanel{title_of("Residual over Mach number and pressure", last),
                  "Errors of the model over its envelope: a region of one colour has a bias.", "mach",
                  "pressure", residuals_.back()});
   add_distributions(report(), residuals_);
-  add_track(report(), title_of("Residual on the map", comparison_, last),
+  add_track(report(), title_of("Residual on the map", last),
             "Ground track: one colour over a leg, or for one heading, indicates a dependence on the place or "
             "the direction.",
             residuals_.back());
@@ -109,12 +128,11 @@ void ComparisonPanels::add_panels() {
                                      : "Delta-p of the reference and of the models",
       fmt::format("Delta-p implied by the reference ({}), and delta-p of the model.", comparison_.reference),
       defects_, "delta-p"});
-  report().items.emplace_back(
-      PairPanel{title_of("Delta-p of the reference against that of the model", comparison_, last),
-                "A perfect model lies on the line.",
-                defects_.back(),
-                "wanted",
-                {{1.0, 0.0, "equal"}}});
+  report().items.emplace_back(PairPanel{title_of("Delta-p of the reference against that of the model", last),
+                                        "A perfect model lies on the line.",
+                                        defects_.back(),
+                                        "wanted",
+                                        {{1.0, 0.0, "equal"}}});
 }
 
 void ComparisonPanels::add_pairs() {
@@ -130,24 +148,34 @@ void ComparisonPanels::add_pairs() {
     report().items.emplace_back(PairPanel{title, caption + note(fit), x, y, lines});
   };
   if (comparison_.total_pressure) {
-    add("total", "total pressure of the model's system", &FlightResiduals::total_pressure);
-    add("reference_total", "total pressure of the reference", &FlightResiduals::reference_total_pressure);
+    add("total", "model's system", &FlightResiduals::total_pressure);
+    add("reference_total", "reference", &FlightResiduals::reference_total_pressure);
     pair("Total pressures of the two systems",
          "Static defects cancel in the total pressure: the difference shows errors of the transducers, the "
          "pitots and the lines. ",
          "total", "reference_total", *comparison_.total_pressure);
   }
   if (!comparison_.is_static_pressure) return;
-  add("corrected", "static pressure of the model",
+  add("corrected", "model",
       [](const FlightResiduals& f) -> const std::vector<double>& { return f.corrected_pressures.back(); });
   report().columns.push_back(report().columns.back());
   ReportColumn& reference = report().columns.back();
   reference.name = "reference_corrected";
-  reference.title = "static pressure of the reference";
+  reference.title = "reference";
   const std::vector<double>& residual = report().columns[comparison_.models.size() - 1].values;
   for (std::size_t i = 0; i < reference.values.size(); ++i) reference.values[i] += residual[i];
   pair("Corrected static pressures", "The line is an orthogonal fit, its rms that of the distances from it. ",
        "corrected", "reference_corrected", comparison_.models.back().static_pressure);
+}
+
+void ComparisonPanels::add_model_table() {
+  if (!are_numbered()) return;
+  ReportTable table{"Models", "", {"", "model", "bias, hPa", "rms, hPa", "noise, hPa"}};
+  for (const ModelComparison& model : comparison_.models) {
+    table.rows.push_back({label_of_model(model), model.name, fmt::format("{:+.3f}", model.all.bias),
+                          fmt::format("{:.3f}", model.all.rms), fmt::format("{:.3f}", model.all.noise_rms)});
+  }
+  report().items.emplace_back(std::move(table));
 }
 
 void ComparisonPanels::add_tables() {
@@ -159,8 +187,15 @@ void ComparisonPanels::add_tables() {
                             i == 0 ? "used" : "not used: " + std::string(mask_info[i].meaning)});
   }
   report().items.emplace_back(std::move(masks));
+  const auto by_name = [](const ModelComparison& a, const ModelComparison& b) { return a.name < b.name; };
+  const ModelComparison& first =
+      *std::min_element(comparison_.models.begin(), comparison_.models.end(), by_name);
+  const std::string bands_caption = fmt::format(
+      "Bands with fewer than 30 samples are omitted. Std. error: of the bias, for correlated noise with "
+      "drift.{}",
+      comparison_.models.size() == 1 ? "" : " The Mach number is that of '" + label_of_model(first) + "'.");
   for (const ModelComparison& model : comparison_.models) {
-    ReportTable worst{title_of("The worst minutes", comparison_, model),
+    ReportTable worst{title_of("The worst minutes", model),
                       "The minutes with the largest rms residual, and their regimes.",
                       {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"}};
     for (const WorstInterval& interval : model.worst) {
@@ -169,10 +204,10 @@ void ComparisonPanels::add_tables() {
                             fmt::format("{:.3f}", interval.statistics.rms), interval.regimes});
     }
     report().items.emplace_back(std::move(worst));
-    ReportTable bands{title_of("By band", comparison_, model),
-                      "Bands with fewer than 30 samples are omitted.",
-                      {"band", "samples", model.is_by_gps() ? "GPS bias, hPa" : "bias, hPa", "std. error",
-                       "rms, hPa", model.is_by_gps() ? "rms / max noise" : "rms / noise"}};
+    ReportTable bands{title_of("By band", model),
+                      bands_caption,
+                      {"band", "samples", model.is_by_gps() ? "GPS bias, hPa" : "bias, hPa",
+                       "std. error, hPa", "rms, hPa", model.is_by_gps() ? "rms / max noise" : "rms / noise"}};
     for (const PartStatistics& band : model.bands) {
       bands.rows.push_back(
           {band.name, std::to_string(band.statistics.samples), fmt::format("{:.3f}", band.statistics.bias),
@@ -203,9 +238,11 @@ void ComparisonPanels::summarise() {
                           model.r_squared)
             : "";
     report().summary.push_back(
-        sentence(fmt::format("{}: {}bias {:+.3f} hPa, rms {:.3f} hPa{}, over {} samples{}", model.name,
-                             model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
-                             over_noise(model), model.all.samples, r_squared)));
+        sentence(fmt::format("{}: {}bias {:+.3f} hPa, rms {:.3f} hPa{}, over {} samples{}",
+                             label_of_model(model), model.is_by_gps() ? "GPS " : "", model.all.bias,
+                             model.all.rms, over_noise(model), model.all.samples, r_squared)));
+  }
+  for (const ModelComparison& model : comparison_.models) {
     if (const std::string text = flaps_out_text(model.flaps_out, "the comparison"); !text.empty())
       report().summary.push_back(sentence(text));
   }
@@ -243,13 +280,14 @@ Report comparison_report(const Comparison& comparison) {
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
   const ModelComparison& worst = worst_by_noise(comparison, best);
   std::vector<std::string> names;
-  for (const ModelComparison& model : comparison.models) names.push_back(model.name);
+  for (const ModelComparison& model : comparison.models) names.push_back(panels.label_of_model(model));
   panels.report().title =
       worst.is_by_gps()
           ? fmt::format("Residual by {}: {}", best.reference, fmt::join(names, "; "))
           : fmt::format("{}{}: rms residual {:.3f} hPa{}{}",
-                        comparison.models.size() > 1 ? "Smallest error: " : "", best.name, worst.all.rms,
-                        &worst == &best ? "" : " by " + worst.reference, internal::over_noise(worst));
+                        comparison.models.size() > 1 ? "Smallest error by " : "", panels.label_of_model(best),
+                        worst.all.rms, &worst == &best ? "" : " by " + worst.reference,
+                        internal::over_noise(worst));
   panels.report().subtitle = "Comparison with " + comparison.reference;
   panels.summarise();
   // The further references follow the first sentence.
@@ -257,9 +295,9 @@ Report comparison_report(const Comparison& comparison) {
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models)
       others.push_back(fmt::format("{}{}: {}bias {:+.3f} hPa, rms {:.3f} hPa{}.",
-                                   comparison.models.size() > 1 ? model.name + ", " : "", further.reference,
-                                   model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
-                                   internal::over_noise(model)));
+                                   comparison.models.size() > 1 ? panels.label_of_model(model) + ", " : "",
+                                   further.reference, model.is_by_gps() ? "GPS " : "", model.all.bias,
+                                   model.all.rms, internal::over_noise(model)));
   }
   std::vector<std::string>& summary = panels.report().summary;
   summary.insert(summary.begin() + 1, others.begin(), others.end());

@@ -17,6 +17,9 @@ class ComparisonPanels {
 
   Report& report() { return samples_.report(); }
 
+  /// Label of a model in titles, pictures and tables: its name, or its number.
+  std::string label_of_model(const ModelComparison& model) const;
+
   void add_panels();
   /// Comparison of the two systems: figures 1 and 2 of the memo.
   void add_pairs();
@@ -26,6 +29,13 @@ class ComparisonPanels {
  private:
   template <class Series>
   void add(const std::string& name, const std::string& title, const Series& series);
+
+  /// Whether several models, one with a long name, are called "model 1", "model 2", as the command prints.
+  bool are_numbered() const;
+  /// A title with the label of the model, if there are several.
+  std::string title_of(const std::string& what, const ModelComparison& model) const;
+  /// The names of numbered models.
+  void add_model_table();
 
   const Comparison& comparison_;
   FlightReport samples_;

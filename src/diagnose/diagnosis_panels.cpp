@@ -14,7 +14,6 @@
 #include "diagnose/finding_page.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
-#include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal::report {
 namespace {
@@ -126,13 +125,37 @@ void DiagnosisPanels::add_finding_columns(const Flights& flights, std::size_t fi
   add_column(numbered("added", number), "added by " + id, "hPa", flights, one_of(&FlightDiagnosis::added));
 }
 
+std::string DiagnosisPanels::effect_caption(const std::string& before_it, const std::string& after_it) const {
+  constexpr double notable = 0.98;
+  const ReportColumn* const before = column_named(samples_.report().columns, before_it);
+  const ReportColumn* const after = column_named(samples_.report().columns, after_it);
+  if (before == nullptr || after == nullptr || before == after) return structure_caption;
+  double squares_before = 0.0;
+  double squares_after = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < before->values.size(); ++i) {
+    const double a = before->values[i];
+    const double b = after->values[i];
+    if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    squares_before += a * a;
+    squares_after += b * b;
+    count += 1.0;
+  }
+  if (!(count > 0.0)) return structure_caption;
+  return fmt::format("Rms {} hPa before and {} hPa after, with all findings. {}",
+                     hpa(std::sqrt(squares_before / count)), hpa(std::sqrt(squares_after / count)),
+                     squares_after < notable * notable * squares_before
+                         ? "They should remove slopes and curvatures larger than the error bars."
+                         : "This picture does not show the evidence; see the pictures of the evidence.");
+}
+
 void DiagnosisPanels::add_binned(std::string title, std::string caption, std::vector<std::string> y,
                                  const std::vector<std::string>& first) {
   BinnedPanel panel{std::move(title), std::move(caption), present(report(), std::move(y)), {}};
   panel.x_choices = choices(panel.columns, first);
   if (panel.x_choices.empty()) return;
   panel.axis = "residual";
-  panel.autocorrelation_time = memory_;
+  panel.autocorrelation_time = noise_autocorrelation(report(), panel.columns.back());
   add(std::move(panel));
 }
 
@@ -162,26 +185,26 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   }
   panel.title = "What if";
   panel.caption =
-      "Switch an effect on, or move its coefficient: residual, table, steps and figures follow, and the "
-      "coefficients that were not moved by hand are fitted again. The fit is linear about the current model, "
-      "with the weights of pcor refit. It equals the result of pcor refit if the residual is linear in the "
-      "coefficients, and nearly equals it otherwise, for example for a lag. Standard errors here are those "
-      "of "
-      "the noise with its drift; pcor refit adds the misfit of the model and the calibration of the "
-      "reference. "
-      "The decrease of chi2 is in units "
-      "of the noise with its drift: for one fitted coefficient, the square of its change over its error. The "
-      "search gives less weight to slow changes, so its chi2 differs. ";
+      "Switch effects on or move a coefficient; the other coefficients are refitted at once (linear "
+      "approximation).";
+  panel.details =
+      "The fit has the weights of pcor refit and equals it if the residual is linear in the coefficients; "
+      "otherwise, for example for a lag, it is approximate. Standard errors are by the noise with its drift; "
+      "pcor refit adds the misfit of the model and the calibration of the reference. The decrease of chi2 is "
+      "in units of the noise with its drift: for one fitted coefficient, the square of its change over its "
+      "error. The search gives less weight to slow changes, so its chi2 differs. ";
   const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
   if (std::any_of(panel.coefficients.begin(), own_end,
                   [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); }))
-    panel.caption += "The coefficients of the reference system keep their given values here. ";
-  panel.caption +=
+    panel.details +=
+        "The coefficients of the reference system keep their input values here, so the held-out rms differs "
+        "from that of pcor improve, which fits them. ";
+  panel.details +=
       "The numbers use all samples; pictures and tables of a flight of more than 16,000 samples interpolate "
       "derivatives between regular samples.";
   panel.residual = residual;
   panel.x_choices = choices({residual}, first);
-  panel.autocorrelation_time = memory_;
+  panel.autocorrelation_time = noise_autocorrelation(report(), residual);
   panel.noise = noise;
   panel.noise_label = noise_label;
   add(std::move(panel));
@@ -194,20 +217,6 @@ void DiagnosisPanels::add_plane(std::string title, std::string caption, const st
 
 void DiagnosisPanels::add_table(ReportTable table) {
   if (!table.rows.empty()) add(std::move(table));
-}
-
-void DiagnosisPanels::measure_memory(const Flights& flights, Series FlightDiagnosis::*residual) {
-  double samples = 0.0;
-  double independent = 0.0;
-  for (const FlightDiagnosis& flight : flights) {
-    const Series& values = flight.*residual;
-    if (flight.samples == nullptr || values.size() != flight.samples->time.size()) continue;
-    const auto count = static_cast<double>(
-        std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
-    samples += count;
-    independent += count / noise_of_flight(*flight.samples, values).autocorrelation_time;
-  }
-  if (independent > 0.0) memory_ = std::max(1.0, samples / independent);
 }
 
 void DiagnosisPanels::add_variables(const Flights& flights) {
@@ -261,15 +270,16 @@ void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::str
   const Unexplained& unexplained = diagnosis.unexplained;
   if (!unexplained.significant) return;
   ReportText page{"Unexplained residual", unexplained_text(unexplained)};
-  if (!unexplained.computed.empty())
-    page.paragraphs.push_back(
-        fmt::format("Variables not tested because, according to the files, they are computed from the "
-                    "sensors of the residual: {}.",
-                    join_list(unexplained.computed)));
-  if (!unexplained.shares_noise.empty())
-    page.paragraphs.push_back(
-        fmt::format("Variables not tested because they share the noise of the residual: {}.",
-                    join_list(unexplained.shares_noise)));
+  const std::size_t computed = unexplained.computed.size();
+  const std::size_t noisy = unexplained.shares_noise.size();
+  if (computed + noisy > 0) {
+    page.paragraphs.push_back(fmt::format("Variables not tested: {}.", computed + noisy));
+    if (computed > 0)
+      page.details = fmt::format("Computed from the sensors of the residual, according to the files: {}. ",
+                                 join_list(unexplained.computed));
+    if (noisy > 0)
+      page.details += fmt::format("With noise of the residual: {}.", join_list(unexplained.shares_noise));
+  }
   add(std::move(page));
   if (add_column("drift", "slow drift", "hPa", diagnosis.flights, &FlightDiagnosis::drift))
     add(TimePanel{"Remaining residual and its slow drift",

@@ -19,10 +19,7 @@ using Series = std::vector<double>;
 using Info = std::vector<std::pair<std::string, std::string>>;
 
 inline constexpr const char* structure_caption =
-    "A slope or curvature larger than the error bars indicates an effect that the model lacks.";
-inline constexpr const char* effect_caption =
-    "Without the effect the residual has a slope or curvature larger than the error bars; with the effect it "
-    "should have neither.";
+    "A slope or curvature larger than the error bars indicates a missing effect or slow drift.";
 
 /// Name of one of several columns, "residual1".
 std::string numbered(const char* name, std::size_t number);
@@ -65,7 +62,12 @@ class DiagnosisPanels {
   /// Adds the variable with the most unexplained structure, if any, to the axes of residual plots.
   void add_traced(const Diagnosis& diagnosis);
 
-  /// Residuals against the variables; the existing variables of `first` are shown first.
+  /// Caption of the residual before and after an effect is added, columns of the report, with both rms
+  /// values.
+  std::string effect_caption(const std::string& before_it, const std::string& after_it) const;
+
+  /// Residuals against the variables; the existing variables of `first` are shown first. Error bars are by
+  /// the noise of the last residual.
   void add_binned(std::string title, std::string caption, std::vector<std::string> y,
                   const std::vector<std::string>& first);
 
@@ -80,9 +82,6 @@ class DiagnosisPanels {
 
   /// Adds the table unless it has no rows.
   void add_table(ReportTable table);
-
-  /// Estimates the correlation of the noise, for error bars, from a residual without structure.
-  void measure_memory(const Flights& flights, Series FlightDiagnosis::*residual);
 
   /// @param numbers further text after the model and the reference
   void add_info(const Diagnosis& diagnosis, const ModelDefinition& model, const Info& numbers);
@@ -114,7 +113,6 @@ class DiagnosisPanels {
 
   FlightReport samples_;
   std::vector<std::string> variables_;
-  double memory_ = 1.0;
 };
 
 }  // namespace pcor::internal::report

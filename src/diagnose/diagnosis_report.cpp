@@ -91,7 +91,7 @@ BarPanel ranking_bars(const Diagnosis& diagnosis) {
   BarPanel bars{"Ranking",
                 "Decrease of chi2 by each effect that was found, and by each rival (\"or\") instead of it.",
                 {},
-                "fall of chi2"};
+                "decrease of chi2"};
   for (const Finding& finding : diagnosis.findings) {
     bars.bars.push_back({finding.id(), finding.chi2});
     for (const Alias& alias : finding.aliases)
@@ -109,7 +109,7 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
       "Findings and their rivals",
       "A rival (\"or\") explains the flights as well as the effect above it. Correlation: between the two "
       "effects after the model's own coefficients. Size / usual: ratio of the coefficient to its usual size.",
-      {"", "effect", "coefficients", "rms, hPa", "fall of chi2", "correlation", "size / usual", "what"}};
+      {"", "effect", "coefficients", "rms, hPa", "decrease of chi2", "correlation", "size / usual", "what"}};
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
     const Finding& finding = diagnosis.findings[i];
     table.rows.push_back({std::to_string(i + 1), finding.id(), estimates_text(finding.estimates),
@@ -144,7 +144,7 @@ void add_against_inputs(DiagnosisPanels& panels, const Diagnosis& diagnosis,
   std::vector<std::string> inputs = inputs_of(effect);
   inputs.push_back(numbered("added", number));
   panels.add_binned("Residual before and after, against the inputs of " + diagnosis.findings[number].id(),
-                    effect_caption, residuals, inputs);
+                    panels.effect_caption(residuals.front(), residuals.back()), residuals, inputs);
 }
 
 /// Pictures of the findings of a diagnosis, and one page per finding.
@@ -156,7 +156,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
                   {},
                   "added"};
   TimePanel evidence{
-      "Evidence in time", "Decrease of chi2 per minute around each sample.", {}, "fall of chi2"};
+      "Evidence in time", "Decrease of chi2 per minute around each sample.", {}, "decrease of chi2"};
   for (std::size_t i = 0; i < findings.size(); ++i) {
     added.columns.push_back(numbered("added", i));
     evidence.columns.push_back(numbered("evidence", i));
@@ -262,17 +262,16 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
   if (found && panels.add_column("after", "residual after, with all findings", "hPa", diagnosis.flights,
                                  &FlightDiagnosis::after))
     residuals.emplace_back("after");
-  panels.measure_memory(diagnosis.flights, found ? &FlightDiagnosis::after : &FlightDiagnosis::before);
   for (std::size_t i = 0; i < findings.size(); ++i)
     panels.add_finding_columns(diagnosis.flights, i, findings[i].id(), i);
-  if (found) add_against_inputs(panels, diagnosis, residuals, 0);
-  panels.add_residual_in_time(diagnosis, residuals);
   if (what_if != nullptr) {
     panels.add_what_if(*what_if, "before",
                        found ? inputs_of(findings.front().effect) : std::vector<std::string>{},
                        found ? diagnosis.noise_rms_with_findings : diagnosis.noise_rms,
                        found ? "noise with all findings" : "noise");
   }
+  if (found) add_against_inputs(panels, diagnosis, residuals, 0);
+  panels.add_residual_in_time(diagnosis, residuals);
   panels.add_residual_by_regime(diagnosis, residuals);
   if (found) {
     add_findings(panels, diagnosis, residuals);

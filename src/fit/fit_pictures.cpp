@@ -30,14 +30,18 @@ std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& 
     const bool is_known = std::isfinite(p.standard_error);
     // Compares previous values larger than the error; a relative change from nearly zero is meaningless.
     const bool compares = std::isfinite(percent) && !(is_known && std::abs(p.start) < p.standard_error);
-    const std::string error = is_known ? fmt::format(" ± {:.2g}", p.standard_error) : "";
+    const bool has_error = is_known && p.standard_error > 0.0;
+    const int decimals = has_error ? decimals_of_error(p.standard_error) : 0;
+    const std::string value =
+        has_error ? fmt::format("{:.{}f} ± {:.{}f}", p.value, decimals, p.standard_error, decimals)
+                  : fmt::format("{:.4g}", p.value);
     const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
     panel.rows.push_back(
         {p.name,
          {compares ? ReportDot{percent * (p.value - p.start), is_known ? percent * p.standard_error : 0.0}
                    : ReportDot{nan, 0.0}},
-         fmt::format("{} → {:.4g}{}{}{}", std::isfinite(p.start) ? fmt::format("{:.4g}", p.start) : "new",
-                     p.value, error, unit, is_known ? "" : ", error unknown")});
+         fmt::format("{} → {}{}{}", std::isfinite(p.start) ? fmt::format("{:.4g}", p.start) : "new", value,
+                     unit, is_known ? "" : ", error unknown")});
   }
   const auto shown = std::count_if(panel.rows.begin(), panel.rows.end(), [](const ReportDotRow& row) {
     return std::isfinite(row.dots.front().value);

@@ -31,20 +31,27 @@ ReportTable coefficient_table(const RefitResult& fit) {
   ReportTable table;
   table.title = "Coefficients";
   table.caption =
-      "Standard errors allow for the autocorrelation of the residuals; jackknife errors come from leaving "
-      "out one flight or one part of a flight at a time (inf: one alone determines the coefficient). Unit 1: "
-      "a ratio, such as hPa/hPa.";
+      "Std. error: from correlated noise, the misfit of the model and the calibration of the reference; "
+      "jackknife: from leaving out one flight or one part of a flight at a time (inf: one alone determines "
+      "the coefficient). Unit 1: a ratio, such as hPa/hPa.";
   table.headers = {"coefficient", "before", "after", "std. error", "jackknife", "unit", "stage"};
   if (fit.is_by_gps()) {
-    table.headers[3] = "stated error";
+    table.caption =
+        "Likelihood: standard error by the likelihood of wind and height; jackknife: from leaving out one "
+        "flight or one part of a flight at a time (inf: one alone determines the coefficient). Std. error: "
+        "the one of these two with the larger error of delta-p. Unit 1: a ratio, such as hPa/hPa.";
     table.headers.insert(table.headers.begin() + 4, "likelihood");
   }
-  const auto number = [](double error) { return std::isnan(error) ? "" : fmt::format("{:.3g}", error); };
+  const auto number = [](double error) { return std::isnan(error) ? "" : fmt::format("{:.2g}", error); };
   for (const FittedParameter& p : fit.parameters) {
-    std::vector<std::string> row{p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
-                                 !p.fitted    ? "held"
+    const bool has_error = p.fitted && p.standard_error > 0.0 && std::isfinite(p.standard_error);
+    std::vector<std::string> row{p.name, fmt::format("{:.6g}", p.start),
+                                 has_error
+                                     ? fmt::format("{:.{}f}", p.value, decimals_of_error(p.standard_error))
+                                     : fmt::format("{:.6g}", p.value),
+                                 !p.fitted    ? "fixed"
                                  : p.at_bound ? "bound"
-                                              : fmt::format("{:.3g}", p.standard_error)};
+                                              : number(p.standard_error)};
     if (fit.is_by_gps()) row.push_back(number(p.noise_error));
     row.insert(row.end(), {number(p.jackknife_error), p.unit.empty() ? "not stated" : p.unit,
                            p.fitted ? std::to_string(p.stage) : ""});
@@ -56,12 +63,21 @@ ReportTable coefficient_table(const RefitResult& fit) {
 ReportTable correlation_table(const RefitResult& fit) {
   ReportTable table;
   table.title = "Correlations of the coefficients";
-  table.caption = fmt::format("Condition number {:.0f}.", fit.condition_number);
+  table.caption = fmt::format("Condition number {:.0f} (above 300: coefficients are nearly collinear).",
+                              fit.condition_number);
   table.headers.emplace_back("");
-  for (const std::string& name : fit.covariance_names) table.headers.push_back(name);
-  for (std::size_t a = 0; a < fit.covariance_names.size(); ++a) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t i = 0; i < fit.covariance_names.size(); ++i) {
+    const std::string& name = fit.covariance_names[i];
+    if (std::any_of(fit.parameters.begin(), fit.parameters.end(),
+                    [&name](const FittedParameter& p) { return p.fitted && p.name == name; })) {
+      fitted.push_back(i);
+      table.headers.push_back(name);
+    }
+  }
+  for (const std::size_t a : fitted) {
     std::vector<std::string> row{fit.covariance_names[a]};
-    for (std::size_t b = 0; b < fit.covariance_names.size(); ++b) {
+    for (const std::size_t b : fitted) {
       const double scale = std::sqrt(fit.covariance[a][a] * fit.covariance[b][b]);
       row.push_back(scale > 0.0 ? fmt::format("{:+.3f}", fit.covariance[a][b] / scale) : "");
     }
@@ -118,7 +134,6 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   panels.summarise();
   if (auto picture = coefficient_picture(fit.parameters, "before the fit", "after the fit"))
     report.items.emplace_back(std::move(*picture));
-  report.items.emplace_back(coefficient_table(fit));
   add_held_out(report, fit.flights);
   panels.add_panels();
   panels.add_pairs();
@@ -134,8 +149,11 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
     report.items.emplace_back(std::move(bars));
   }
   report.items.emplace_back(flight_table(fit));
-  if (fit.covariance_names.size() > 1) report.items.emplace_back(correlation_table(fit));
+  if (ReportTable table = correlation_table(fit); table.rows.size() > 1)
+    report.items.emplace_back(std::move(table));
   panels.add_tables();
+  // After the first picture.
+  report.items.emplace(report.items.begin() + 1, coefficient_table(fit));
   return std::move(report);
 }
 

@@ -57,11 +57,10 @@ std::vector<std::string> held_out_names(const Improvement& improvement) {
   return names;
 }
 
-/// Sentence on the samples that are not in the fit; empty with held-out flights or parts of them.
+/// Sentence on the held-out samples; empty with held-out flights or parts of them.
 std::string held_out_text(const Improvement& improvement) {
   if (improvement.holdout_is_flights) return "";
-  return "Not in the fit: every fifth five minutes in turn, without outliers; coefficients are fitted to "
-         "the rest.";
+  return "Held out: five-fold cross-validation in blocks of 5 min, without outliers.";
 }
 
 /// Label of a step: "refitted", "+ static-lag".
@@ -72,15 +71,15 @@ DotPanel steps_picture(const Improvement& improvement) {
   DotPanel panel;
   panel.title = "Rms of each step";
   panel.caption =
-      "Rms residual after each effect that was added. Bars are standard errors for the effective sample "
-      "size; the dashed line is the noise, a lower limit. All values use the same samples, so a step may be "
-      "significant although bars overlap.";
+      "Rms residual after each added effect, with standard errors for the effective sample size; dashed: the "
+      "noise, a lower limit. All values use the same samples, so a step may be significant although bars "
+      "overlap.";
   if (const std::string text = held_out_text(improvement); !text.empty()) panel.caption += " " + text;
   panel.axis = "rms residual";
   panel.unit = "hPa";
   panel.series = {"fitted", improvement.holdout_is_flights
                                 ? "held out: " + join_list(held_out_names(improvement))
-                                : "not in the fit, every fifth 5 min in turn"};
+                                : "held out, five-fold"};
   const double noise = improvement.steps.back().noise_rms;
   if (std::isfinite(noise)) panel.lines = {{fmt::format("noise, {:.3f} hPa", noise), noise}};
   const double fitted = independent_samples(improvement, &ImprovedFlight::fitted);
@@ -97,7 +96,7 @@ DotPanel steps_picture(const Improvement& improvement) {
                           {dot(in_fit, fitted), dot(held_out, apart)},
                           fmt::format("{} and {}", text(in_fit), text(held_out))});
   };
-  add("given model", improvement.given_rms_train, improvement.given_rms_holdout);
+  add("input model", improvement.given_rms_train, improvement.given_rms_holdout);
   for (const ImproveStep& step : improvement.steps) add(step_name(step), step.rms_train, step.rms_holdout);
   const bool delivers_rivals = std::any_of(
       improvement.steps.begin(), improvement.steps.end(),
@@ -135,14 +134,8 @@ ReportTable steps_table(const Improvement& improvement) {
   ReportTable table;
   table.title = "Steps of the selection";
   table.caption = held_out_text(improvement);
-  table.headers = {"model",
-                   "free coefficients",
-                   "rms in the fit, hPa",
-                   improvement.holdout_is_flights ? "rms held out, hPa" : "rms not in the fit, hPa",
-                   "noise, hPa",
-                   "effect, hPa rms",
-                   "not separable from",
-                   "conclusion"};
+  table.headers = {"model",      "free coefficients", "rms fitted, hPa",    "rms held out, hPa",
+                   "noise, hPa", "effect, hPa rms",   "not separable from", "conclusion"};
   for (std::size_t i = 0; i < improvement.steps.size(); ++i) {
     const ImproveStep& step = improvement.steps[i];
     const Finding* const finding = i > 0 ? finding_of(improvement, i) : nullptr;
@@ -158,15 +151,14 @@ void summarise(Report& report, const Improvement& improvement) {
   summarise_held_out(report, improvement.fit.flights);
   const ImproveStep& first = improvement.steps.front();
   const ImproveStep& last = improvement.steps.back();
-  const char* const outside = improvement.holdout_is_flights ? "held-out samples" : "parts outside the fit";
   report.summary.push_back(
       improvement.steps.size() == 1
           ? fmt::format(
-                "The rms residual is {} hPa, with the coefficients fitted again {} hPa, and {} hPa on {}; "
+                "The rms residual is {} hPa, with the coefficients fitted again {} hPa, and {} hPa held out; "
                 "the noise is {} hPa.",
-                hpa(improvement.given_rms_train), hpa(last.rms_train), hpa(last.rms_holdout), outside,
+                hpa(improvement.given_rms_train), hpa(last.rms_train), hpa(last.rms_holdout),
                 hpa(last.noise_rms))
-          : fmt::format("On {} the rms residual changes from {} to {} hPa; the noise is {} hPa.", outside,
+          : fmt::format("The held-out rms residual changes from {} to {} hPa; the noise is {} hPa.",
                         hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
   for (const ImproveStep& step : improvement.steps) {
     if (step.added.empty()) continue;
@@ -218,8 +210,10 @@ void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size
         fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as the only added effect",
                     estimates_text(fitted)));
   panels.add(std::move(page));
-  panels.add_binned("Residual without and with " + step.added + ", against its inputs", effect_caption,
-                    {numbered("step", index - 1), numbered("step", index)}, inputs);
+  const std::string without = numbered("step", index - 1);
+  const std::string with = numbered("step", index);
+  panels.add_binned("Residual without and with " + step.added + ", against its inputs",
+                    panels.effect_caption(without, with), {without, with}, inputs);
   panels.add_plane("Evidence for " + step.added + ", over Mach number and pressure",
                    "Orange supports the effect, blue contradicts it.", numbered("evidence", index));
 }
@@ -250,10 +244,9 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
                       &FlightDiagnosis::before);
   }
   residuals = present(report, std::move(residuals));
-  panels.measure_memory(top.flights, &FlightDiagnosis::before);
   name_held_out(report, improvement);
   const std::vector<ImprovedFlight>& flights = improvement.flights;
-  panels.add_column("model-given", "residual, given model", "hPa", flights, &ImprovedFlight::given);
+  panels.add_column("model-given", "residual, input model", "hPa", flights, &ImprovedFlight::given);
   panels.add_column("model-refitted", "residual, refitted", "hPa", flights, &ImprovedFlight::refitted);
   panels.add_column("model-best", "residual, best model", "hPa", flights, &ImprovedFlight::best);
   panels.add(steps_picture(improvement));
@@ -265,7 +258,7 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
   add_held_out(report, improvement.fit.flights);
   std::vector<FittedParameter> parameters = improvement.fit.parameters;
   for (FittedParameter& parameter : parameters) parameter.start = value_in(start, parameter.name);
-  if (auto picture = coefficient_picture(parameters, "given model", "best model"))
+  if (auto picture = coefficient_picture(parameters, "input model", "best model"))
     panels.add(std::move(*picture));
   if (!residuals.empty())
     panels.add_plane("Remaining residual over Mach number and pressure",

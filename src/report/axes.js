@@ -159,8 +159,10 @@ function numberTicks(from, to, length, distance) {
   return all.map((value) => ({value, label: number(value, step)}));
 }
 
+const labelBeyond = 24;  // a label along a plot may be longer than the plot by this
+
 // Grid and numbers of the vertical axis; its label is turned along it, and may be longer by `beyond`.
-function verticalAxis(pen, box, y, {from, to}, label, theme, distance = 30, beyond = 24) {
+function verticalAxis(pen, box, y, {from, to}, label, theme, distance = 30, beyond = labelBeyond) {
   for (const tick of numberTicks(from, to, box.height, distance)) {
     const at = Math.round(y(tick.value)) + 0.5;
     pen.lines([[box.x, at, box.x + box.width, at]], theme.grid);
@@ -176,7 +178,7 @@ function horizontalTicks(pen, box, placed, label, theme) {
     pen.lines([[x, box.y, x, base]], theme.grid);
     pen.text(Math.min(x, end - textWidth(words, fontSize) / 2), base + 17, words, small(theme, 'middle'));
   }
-  pen.text(box.x + box.width / 2, base + 36, label, small(theme, 'middle'));
+  pen.text(box.x + box.width / 2, base + 36, shortened(label, box.width + 2 * rightMargin, fontSize), small(theme, 'middle'));
 }
 
 function horizontalAxis(pen, box, x, {from, to}, label, theme, distance = 76) {
@@ -199,11 +201,24 @@ function frame(pen, box, theme, zero) {
   if (zero > box.y && zero < base) pen.lines([[box.x, zero, box.x + box.width, zero]], theme.frame, 1, [4, 3]);
 }
 
+// Text cut to a width; the unit at its end is kept.
 function shortened(words, width, size) {
   if (textWidth(words, size) <= width) return words;
-  let end = words.length;
-  while (end > 1 && textWidth(`${words.slice(0, end)}…`, size) > width) --end;
-  return `${words.slice(0, end)}…`;
+  const [, name, unit = ''] = words.match(/^(.*?)( \([^()]*\))?$/s);
+  let end = name.length;
+  while (end > 1 && textWidth(`${name.slice(0, end)}…${unit}`, size) > width) --end;
+  return `${name.slice(0, end)}…${unit}`;
+}
+
+// Text broken into lines of a width at its blanks.
+function wrapped(text, width, size, weight = 400) {
+  const lines = [''];
+  for (const word of text.split(' ')) {
+    const longer = `${lines.at(-1)} ${word}`.trim();
+    if (lines.at(-1) && textWidth(longer, size, weight) > width) lines.push(word);
+    else lines[lines.length - 1] = longer;
+  }
+  return lines;
 }
 
 // Marks and names in lines above the plot; returns their height. If buttons name the curves, the legend is
@@ -212,12 +227,14 @@ function legend(pen, entries, left, right, theme) {
   if (theme.named) return 10;
   let x = left, y = 13;
   for (const {label, colour, dash, mark, wide, thickness = 2.5} of entries) {
-    const width = 24 + textWidth(label, fontSize);
+    const lines = wrapped(label, right - left - 24, fontSize);
+    const width = 24 + Math.max(...lines.map((line) => textWidth(line, fontSize)));
     if (x > left && x + width > right) { x = left; y += 17; }
     if (mark) mark(pen, x + 8, y - 4, colour, theme.paper);
     else if (wide) pen.rect(x, y - 10, 16, 12, colour, 0.3);
     else pen.lines([[x, y - 4, x + 16, y - 4]], colour, thickness, dash);
-    pen.text(x + 21, y, label, {...small(theme), fill: theme.ink});
+    lines.forEach((line, n) => pen.text(x + 21, y + 17 * n, line, {...small(theme), fill: theme.ink}));
+    y += 17 * (lines.length - 1);
     x += width + 16;
   }
   return y + 9;

@@ -190,6 +190,11 @@ function binned(xs, ys, indices, {from, to}, autocorrelationTime) {
   });
 }
 
+// Meaning of the error bars of bins. @param autocorrelationTime in samples, at least 1
+const barsText = (autocorrelationTime) => autocorrelationTime >= 1.05
+  ? `Bars: standard error of the mean; ${Number(autocorrelationTime.toPrecision(2))} samples count as one, because fast noise is correlated.`
+  : 'Bars: standard error of the mean, for independent samples.';
+
 const fewest = 5;  // minimum number of samples in a visible bin
 
 // Visible bins, in runs without a gap.
@@ -257,7 +262,8 @@ function drawBinned(pen, width, height, item, samples, theme) {
 
 const levels = 48;  // number of colours
 
-function colourBar(pen, box, colours, {from, to}, label, theme) {
+// A colour bar has the title of its column up to the first comma as label; the title of the picture has the rest.
+function colourBar(pen, box, colours, {from, to}, {title, unit}, theme) {
   const x = box.x + box.width + 14, width = 11;
   const part = box.height / levels;
   for (let i = 0; i < levels; ++i)
@@ -265,6 +271,7 @@ function colourBar(pen, box, colours, {from, to}, label, theme) {
   const y = scale(from, to, box.y + box.height, box.y);
   for (const tick of numberTicks(from, to, box.height, 30))
     pen.text(x + width + 5, y(tick.value) + 4, tick.label, small(theme));
+  const label = shortened(withUnit(title.split(',')[0], unit), box.height + labelBeyond, fontSize);
   pen.text(x + width + 56, box.y + box.height / 2, label, {...small(theme, 'middle'), turn: -90});
 }
 
@@ -299,7 +306,7 @@ function drawPlane(pen, width, height, item, samples, theme) {
   horizontalAxis(pen, box, x, xs, across.label, theme);
   frame(pen, box, theme, NaN);
   pen.clip(box, () => paint(pen, found, (i) => [x(across.values[i]), y(up.values[i])], 3));
-  colourBar(pen, box, colours, range, shade.label, theme);
+  colourBar(pen, box, colours, range, shade, theme);
   tellBeyond(pen, box, xs.beyond + ys.beyond, theme);
   return {
     points: found.length,

@@ -145,7 +145,7 @@ function drawRegimes(pen, width, height, item, samples, theme) {
       label: `${label} (${Math.max(...found.map(({count}) => count))})`,
       mark: names.includes(label) ? regimeMark(label, names, theme) : null,
       dots: found.map((one) => ({value: one.mean, error: scatter(one)})),
-      text: `rms ${found.map(({rms}) => number(rms, 1e-3)).join(' → ')}`,
+      text: `rms ${found.map(({rms}) => number(rms, 1e-3)).join(' → ')} ${columns[0].unit}`.trim(),
       found,
     };
   });

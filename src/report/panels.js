@@ -19,11 +19,14 @@ const isRange = (range) => Array.isArray(range) && range.length === 2 && range.e
 
 const isNumber = (words) => /^[−–\d]/.test(words);
 
+const mostColumnsNarrow = 4;  // rows of a table with more columns are lists in narrow windows
+
 function fillTable(table, {headers, rows}) {
   const head = make('tr', {}, ...headers.map((words, i) => words === '' ? make('td') :
     make('th', {scope: 'col', class: i && rows.some((row) => isNumber(row[i])) ? 'number' : null}, words)));
   const body = rows.map((row) => make('tr', {}, ...row.map((words, i) =>
-    i ? make('td', {class: isNumber(words) ? 'number' : null}, words) : make('th', {scope: 'row'}, words))));
+    i ? make('td', {'class': isNumber(words) ? 'number' : null, 'data-header': headers[i]}, words) : make('th', {scope: 'row'}, words))));
+  table.classList.toggle('list-if-narrow', headers.length > mostColumnsNarrow);
   table.replaceChildren(make('thead', {}, head), make('tbody', {}, ...body));
 }
 
@@ -44,12 +47,7 @@ const titleSize = 13;
 
 // Title broken into lines, and their total height.
 function titleLines(title, width) {
-  const lines = [''];
-  for (const word of title.split(' ')) {
-    const longer = `${lines.at(-1)} ${word}`.trim();
-    if (lines.at(-1) && textWidth(longer, titleSize, 600) > width) lines.push(word);
-    else lines[lines.length - 1] = longer;
-  }
+  const lines = wrapped(title, width, titleSize, 600);
   return {lines, height: 17 * lines.length + 7};
 }
 
@@ -73,6 +71,7 @@ class Panel {
     if (this.switches.length) this.picture.before(make('div', {class: 'chips', role: 'group', 'aria-label': 'Curves'}, ...this.switches));
     this.whole = make('p', {class: 'hint whole', hidden: ''}, 'This picture shows all samples.');
     this.picture.after(this.whole);
+    if (item.kind === 'binned') section.querySelector('.caption')?.append(` ${barsText(item.autocorrelation_time)}`);
     section.append(make('details', {}, make('summary', {}, 'Numbers'), scrolling(`Numbers of ${item.title}`, this.numbers)));
   }
 
@@ -383,7 +382,7 @@ class TimeSelector {
 class Regimes {
   constructor(item, section, report) {
     Object.assign(this, {item, report});
-    this.table = make('table', {class: 'regime-table'});
+    this.table = make('table', {class: 'regime-table list-if-narrow'});
     section.querySelector('h2').after(scrolling(item.title, this.table));
   }
 
@@ -395,12 +394,13 @@ class Regimes {
       ...columns.map(({label}) => make('th', {colspan: 2, scope: 'colgroup', class: 'group'}, label)));
     const second = make('tr', {}, ...columns.flatMap(() =>
       ['Bias', 'Rms'].map((words) => make('th', {scope: 'col', class: 'number'}, words))));
+    const headers = ['Samples', ...columns.flatMap(({label}) => [`${label}: bias`, `${label}: rms`])];
     const rows = samples.selectedByRegime.map(([name, mask]) => {
       const all = columns.map((column) => statistics(column.values, samples.indices([column], mask)));
       const step = this.step(all);
       const cells = [countText(countOf(mask)), ...all.flatMap(({mean, rms}) => [number(mean, step), number(rms, step)])];
       return make('tr', {}, make('th', {scope: 'row'}, name),
-        ...cells.map((words) => make('td', {class: 'number'}, words)));
+        ...cells.map((words, i) => make('td', {'class': 'number', 'data-header': headers[i]}, words)));
     });
     this.table.replaceChildren(make('thead', {}, first, second), make('tbody', {}, ...rows));
   }

@@ -46,7 +46,7 @@ function drawQuantiles(pen, width, height, item, samples, theme) {
   const x = scale(across.from, across.to, box.x, box.x + box.width);
   const y = scale(up.from, up.to, box.y + box.height, box.y);
   verticalAxis(pen, box, y, up, sharedLabel(columns, item.axis), theme);
-  horizontalAxis(pen, box, x, across, 'quantile of a normal distribution (standard deviations)', theme);
+  horizontalAxis(pen, box, x, across, 'normal quantile (standard deviations)', theme);
   frame(pen, box, theme, y(0));
   pen.clip(box, () => all.forEach(({quantiles, middle, spread, colour}) => {
     const line = [across.from, across.to].flatMap((at) => [x(at), y(middle + spread * at)]);

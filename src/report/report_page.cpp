@@ -68,7 +68,7 @@ bool is_numeric(const std::string& cell) {
 constexpr std::size_t max_number = 24;     // characters of a number with its error and unit
 constexpr std::size_t max_on_a_line = 60;  // a cell with more characters may take several lines
 constexpr std::size_t max_columns_narrow =
-    3;                                     // a table with more columns shows rows as lists in narrow windows
+    2;                                     // a table with more columns shows rows as lists in narrow windows
 constexpr std::size_t max_rows_open = 30;  // a table with more rows is folded
 
 std::string folded(std::string_view words, const std::string& content) {
@@ -117,10 +117,18 @@ struct ItemBody {
   std::string operator()(const ReportTable& item) const {
     return table(item) + element("p", item.caption, of_caption);
   }
+  std::string operator()(const WhatIfPanel& panel) const {
+    return element("p", panel.caption, of_caption) + details(panel.details);
+  }
   std::string operator()(const ReportText& item) const {
     std::string html;
     for (const std::string& paragraph : item.paragraphs) html += element("p", paragraph);
-    return html;
+    return html + details(item.details);
+  }
+
+ private:
+  static std::string details(const std::string& text) {
+    return text.empty() ? "" : folded("Details", element("p", text));
   }
 };
 

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <utility>
 
+#include <pcor/numerics/noise.hpp>
+
 #include "numerics/median.hpp"
 #include "numerics/spectrum.hpp"
 #include "report/columns.hpp"
@@ -26,10 +28,19 @@ void add_regimes(Report& report, const std::vector<std::string>& residuals) {
   if (shown.empty() || report.intervals.empty()) return;
   report.items.emplace_back(RegimePanel{
       "Residual by regime",
-      "Dots are the mean in each regime, with its number of samples, bars the scatter about it; the rms is "
-      "at the right. Arrows are means beyond the axis. A mean different from zero in one regime indicates a "
-      "missing effect that depends on the manoeuvre.",
+      "Dots: mean in each regime (number of samples) and its rms; bars: scatter about the mean; arrows: "
+      "means "
+      "beyond the axis. A mean different from zero in one regime indicates a missing effect that depends on "
+      "the manoeuvre.",
       shown, "residual"});
+}
+
+double noise_autocorrelation(const Report& report, const std::string& residual) {
+  const ReportColumn* const column = column_named(report.columns, residual);
+  const double step = step_of(report);
+  if (column == nullptr || !(step > 0.0)) return 1.0;
+  return noise_floor(column->values, contiguous_segments(column->values, report.time, step), step)
+      .autocorrelation_time;
 }
 
 void add_distributions(Report& report, const std::vector<std::string>& residuals) {

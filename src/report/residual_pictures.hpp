@@ -12,6 +12,10 @@ namespace pcor::internal {
 /// Mean and scatter of residuals in each regime.
 void add_regimes(Report& report, const std::vector<std::string>& residuals);
 
+/// Integrated autocorrelation time of the noise of a residual, in samples (`NoiseFloor`), for error bars of
+/// means: variations faster than those of any effect. 1 without the column.
+double noise_autocorrelation(const Report& report, const std::string& residual);
+
 /// Distribution of residuals over periods, and comparison with normal noise.
 void add_distributions(Report& report, const std::vector<std::string>& residuals);
 

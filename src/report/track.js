@@ -105,7 +105,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
     pen.dots(places.flatMap(placeOf), 1.5, theme.frame, 0.6);
     paint(pen, found, placeOf, 3.5);
     const along = places.filter((_, n) => n % Math.ceil(places.length / 1000) === 0).map(placeOf);
-    const taken = [[box.x, box.x + 60 + bar / perPixel, box.y + 20]];  // left, right and line of each name
+    const taken = [];  // left, right and line of each name
     for (const flight of samples.flights) {
       const first = places.find((i) => i >= flight.first && i < flight.end);
       if (first === undefined) continue;
@@ -122,16 +122,16 @@ function drawTrack(pen, width, height, item, samples, theme) {
         (taken.some(([from, to, at]) => from < left + width && to > left && Math.abs(at - line) < 13) ? along.length : 0);
       const [left, line] = [4, 20, -13, 34, -27, 48, -41, 62, -55].flatMap((down) => lefts.map((left) => [left, py + down]))
         .reduce((best, each) => cost(each) < cost(best) ? each : best);
-      if (cost([left, line]) >= along.length) continue;  // no place without covering another name or the scale
+      if (cost([left, line]) > 0) continue;  // no free place
       taken.push([left, left + width, line]);
       pen.text(left, line, words, {...small(theme), fill: theme.ink, halo: theme.paper});
     }
   });
-  pen.lines([[box.x + 12, box.y + 14, box.x + 12, box.y + 18, box.x + 12 + bar / perPixel, box.y + 18,
-    box.x + 12 + bar / perPixel, box.y + 14]], theme.ink, 1.25);
-  pen.text(box.x + 18 + bar / perPixel, box.y + 20, `${number(bar, bar)} km`,
-    {...small(theme), fill: theme.ink, halo: theme.paper});
-  colourBar(pen, box, colours, range, shade.label, theme);
+  // Scale, below the plot and so off the track.
+  const base = box.y + box.height + 36, tip = box.x + bar / perPixel;
+  pen.lines([[box.x, base - 4, box.x, base, tip, base, tip, base - 4]], theme.ink, 1.25);
+  pen.text(tip + 6, base + 2, `${number(bar, bar)} km`, {...small(theme), fill: theme.ink});
+  colourBar(pen, box, colours, range, shade, theme);
   return {
     points: found.length,
     plot: box,

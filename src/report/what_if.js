@@ -3,6 +3,8 @@
 
 const sliderSteps = 1000;
 
+const heldOutWords = 'rms, held out';
+
 const notFound = 'not found';  // `why` of effects that the search did not find
 
 // Value for a number box: four digits, small values with an exponent, so that nine characters suffice.
@@ -195,20 +197,18 @@ class WhatIf {
     };
     this.panels = [add({kind: 'time', title: 'What if: residual in time', columns, axis: 'residual'},
       'The scale is fixed by the residual without the effects.')];
-    this.steps = {kind: 'bars', title: 'What if: steps', bars: this.stepBars(), axis: this.heldOutWords, unit: 'hPa'};
-    this.panels.push(add(this.steps, this.fit.heldOut
-      ? 'On the hold-out, for each effect in the order in which they were switched on.'
-      : 'On every fifth five minutes in turn, without outliers, with coefficients fitted to the rest of the flights; for each effect in the order in which they were switched on.'));
+    this.steps = {kind: 'bars', title: 'What if: steps', bars: this.stepBars(), axis: heldOutWords, unit: 'hPa'};
+    this.panels.push(add(this.steps, `Effects in the order in which they were switched on. ${this.fit.heldOut
+      ? 'Held out: flights or parts that no fit includes.'
+      : 'Held out: five-fold cross-validation in blocks of 5 min, without outliers.'}`));
     const regimes = {title: 'Bias and rms by regime, what if', columns};
     this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);
     if (item.x_choices.length)
       this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, x_choices: item.x_choices,
-        autocorrelation_time: item.autocorrelation_time, axis: 'residual'}, 'A slope or a bend larger than the error bars indicates a missing effect.'));
+        autocorrelation_time: item.autocorrelation_time, axis: 'residual'}, 'A slope or curvature larger than the error bars indicates a missing effect or slow drift.'));
     if (item.effects.length > 1) this.makePair(add, part);
   }
-
-  get heldOutWords() { return this.fit.heldOut ? 'rms, held out' : 'rms, not in the fit'; }
 
   makePair(add, part) {
     const {item} = this;
@@ -311,9 +311,9 @@ class WhatIf {
     fillTable(this.figures, {
       headers: ['hPa', item.start, 'fit on this page', 'what if'],
       rows: [row('rms', [given.rms, nothing.rms, now.rms]),
-             row(this.heldOutWords, [this.heldOutRms(given, false), this.heldOutRms(nothing, true), this.heldOutRms(now, this.own)]),
+             row(heldOutWords, [this.heldOutRms(given, false), this.heldOutRms(nothing, true), this.heldOutRms(now, this.own)]),
              [item.noiseLabel, '', '', number(item.noise, 1e-4)],
-             ['χ² falls by', '', '', this.isChanged ? number(this.fallOfNow, 0.1) : '–']],
+             ['decrease of χ²', '', '', this.isChanged ? number(this.fallOfNow, 0.1) : '–']],
     });
   }
 
@@ -324,7 +324,7 @@ class WhatIf {
     const others = [...this.on].filter((other) => other !== e);
     const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
     const fall = fit.fall(others, [...others, e], this.byHand, this.own);
-    gain.textContent = `χ² ${fall < -0.05 ? 'rises' : 'falls'} by ${number(Math.abs(fall), Math.abs(fall) < 10 ? 0.1 : 1)}`;
+    gain.textContent = `χ² ${fall < -0.05 ? 'increases' : 'decreases'} by ${number(Math.abs(fall), Math.abs(fall) < 10 ? 0.1 : 1)}`;
     gain.title = `Decrease of chi2 ${isOn ? 'by this effect, in addition to the other active ones' : 'if this effect is added to the active ones'}; for one fitted coefficient: (change / error)²`;
     for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
   }
@@ -359,7 +359,7 @@ class WhatIf {
       .filter(({c}) => c < item.own || this.on.has(item.effects.indexOf(this.effectOf(c))))
       .map(({c, name, unit, given}) => [`${c < item.own ? '' : `${this.effectOf(c).id}.`}${name}`, brief(given),
                                         c < item.own ? shown(nothing, c) : '–', this.isChanged ? shown(now, c) : '–', unit]);
-    fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fit on this page', 'what if', 'unit'], rows});
+    fillTable(this.coefficients, {headers: ['Coefficient', 'input model', 'fit on this page', 'what if', 'unit'], rows});
   }
 
   // Command that adds the active effects: one for all of the catalogue, one for each formula.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <pcor/base/utc.hpp>
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/temperature/temperature.hpp>
 #include "base/phrasing.hpp"
 #include "report/shown_flights.hpp"
@@ -27,14 +28,14 @@ ReportTable coefficient_table(const TemperatureResult& result) {
       "likelihood, averaged over likely noise models. Least squares on height, as in Cooper (2012), assumes "
       "independent heights and level or known isobars: its errors are too small. " +
           pressure_error_text(result) + ".",
-      {"", "likelihood", result.pressure_error > 0.0 ? "std. error" : "std. error, noise only",
-       "least squares", "its error", "per 1 hPa of static pressure", "unit"},
+      {"", result.pressure_error > 0.0 ? "likelihood ± std. error" : "likelihood ± std. error, noise only",
+       "least squares ± std. error", "per 1 hPa of static pressure", "unit"},
       {}};
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
-    table.rows.push_back({fmt::format("a{}", k), fmt::format("{:+.5g}", result.likelihood.coefficients[k]),
-                          fmt::format("{:.2g}", result.likelihood.standard_errors[k]),
-                          fmt::format("{:+.5g}", result.least_squares.coefficients[k]),
-                          fmt::format("{:.2g}", result.least_squares.standard_errors[k]),
+    const auto of = [k](const TemperatureFit& fit) {
+      return with_error(fit.coefficients[k], fit.standard_errors[k]);
+    };
+    table.rows.push_back({fmt::format("a{}", k), of(result.likelihood), of(result.least_squares),
                           fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_unit(k)});
   }
   return table;
@@ -42,7 +43,7 @@ ReportTable coefficient_table(const TemperatureResult& result) {
 
 ReportTable degree_table(const TemperatureResult& result) {
   ReportTable table{
-      "Which degree",
+      "Degree of the correction",
       "-2 ln L minus its value without correction: for all flights, and for each flight with the "
       "coefficients of the others. A coefficient is kept if it improves the prediction of held-out flights "
       "by more than 4 and by more than two standard errors.",
@@ -96,12 +97,13 @@ ReportTable law_table(const TemperatureResult& result) {
   ReportTable table{
       "Errors of the law",
       "Errors of the static-pressure coefficients estimated from heights, fitted with those of the "
-      "temperature and corrected.",
-      {"effect", "coefficient", "lacks", "std. error", "range over the flights, hPa"},
+      "temperature and corrected, with standard errors.",
+      {"effect", "coefficient", "lacks", "unit", "range over the flights, hPa"},
       {}};
   for (const LawError& error : result.law_errors)
-    table.rows.push_back({error.effect, error.parameter, fmt::format("{:+.4g}", error.change),
-                          fmt::format("{:.2g}", error.standard_error), fmt::format("{:.2f}", error.range)});
+    table.rows.push_back({error.effect, error.parameter, with_error(error.change, error.standard_error),
+                          std::string(effect_named(error.effect)->parameters[0].unit),
+                          fmt::format("{:.2f}", error.range)});
   return table;
 }
 
@@ -180,6 +182,7 @@ Report temperature_report(const TemperatureResult& result) {
     report.flight_names.push_back(flight.flight);
     report.time.insert(report.time.end(), flight.time.begin(), flight.time.end());
   }
+  report.info.front().second += fmt::format(", shown as {} means of 10 s", report.time.size());
   report.columns = {
       {"before", "uncorrected", "m", joined(result, &FlightHeights::before)},
       {"after", "corrected", "m", joined(result, &FlightHeights::after)},
@@ -198,7 +201,7 @@ Report temperature_report(const TemperatureResult& result) {
       "height difference"});
   report.items.emplace_back(TimePanel{"Height", "Geopotential height by GPS.", {"height"}});
   report.items.emplace_back(BinnedPanel{
-      "Innovations of the likelihood",
+      "Normalised height errors (filter innovations)",
       "Innovations of the filter in standard deviations. A mean that varies with a variable indicates an "
       "error of the correction.",
       {"innovation"},

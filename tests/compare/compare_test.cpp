@@ -363,6 +363,19 @@ TEST(Compare, ImpossibleComparisonIsRefused) {
   EXPECT_THAT(refusal({}, laser_contender()), IsError(Error::Code::usage));
 }
 
+TEST(ComparisonReport, ModelsWithLongNamesAreNumbered) {
+  const std::string long_name(33, 'x');
+  Comparison comparison;
+  for (const std::string& name : {std::string("short"), long_name})
+    comparison.models.emplace_back().name = name;
+  const pcor::Report report = pcor::comparison_report(comparison);
+  EXPECT_EQ(report.columns[1].title, "residual, model 2");
+  const auto is_table = [](const auto& item) { return std::holds_alternative<pcor::ReportTable>(item); };
+  const auto table = std::find_if(report.items.begin(), report.items.end(), is_table);
+  ASSERT_NE(table, report.items.end());
+  EXPECT_EQ(std::get<pcor::ReportTable>(*table).rows[1][1], long_name);
+}
+
 TEST(ComparisonReport, HasTheFiguresAndIsSmall) {
   const std::string one =
       pcor::report_html(pcor::comparison_report(pcor::compare({flight_file()}, {laser_contender()})));

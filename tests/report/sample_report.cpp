@@ -96,8 +96,7 @@ std::vector<pcor::ReportItem> items() {
       TimePanel{"The flight", "Altitude from the uncorrected pressure.", {"altitude"}},
       RegimeTable{"Residuals by regime", "Selected samples.", {"old", "new"}},
       BinnedPanel{"Residual against the state of flight",
-                  "Each bin's mean with its standard error; 25 samples count as one, because residuals are "
-                  "autocorrelated.",
+                  "Mean of each bin.",
                   {"old", "new"},
                   {"mach", "attack", "sideslip", "dynamic", "pressure"},
                   25.0,
@@ -154,7 +153,7 @@ std::vector<pcor::ReportItem> items() {
       DotPanel{"Rms of each step",
                "With the noise as a line.",
                {"fitted", "held out: rf03"},
-               {{"given model", {{0.91, 0.02}, {0.94, 0.03}}, "0.910 and 0.940"},
+               {{"input model", {{0.91, 0.02}, {0.94, 0.03}}, "0.910 and 0.940"},
                 {"refitted", {{0.52, 0.01}, {0.55, 0.02}}, "0.520 and 0.550"},
                 {"+ static-lag", {{0.27, 0.01}, {nan, 0.0}}, "0.270 and –"}},
                "rms residual",

@@ -1,5 +1,5 @@
 // Faults of the text on a report page, as sentences: text outside its window, clipped by an ancestor, or over
-// other text; for the page and for every picture. Tables that the script fills may be scrolled if `is_narrow`.
+// other text, for the page and for every picture; shortened text in a picture, and text on the track of a map.
 (is_narrow) => {
   const tolerance = 2;  // pixels, by which boxes of characters exceed their marks
   const faults = [];
@@ -36,7 +36,6 @@
       boxes.push({left, right, top, bottom, words});
       for (let clip = parent; clip !== document.documentElement; clip = clip.parentElement) {
         if (getComputedStyle(clip).overflowX === 'visible') continue;
-        if (is_narrow && clip.matches('.scroll') && clip.querySelector('table:not([class]), .regime-table')) break;
         const box = clip.getBoundingClientRect();
         if (left < box.left - tolerance || right > box.right + tolerance) faults.push(`page: '${words}' is clipped`);
       }
@@ -45,9 +44,14 @@
   expectApart(boxes, 'page');
   if (document.documentElement.scrollWidth > window.innerWidth) faults.push('the page is wider than its window');
 
-  const {text} = CanvasPen.prototype;
+  const {text, dots} = CanvasPen.prototype;
   for (const panel of pcorReport.panels) {
-    const drawn = [];
+    const drawn = [], track = [];
+    CanvasPen.prototype.dots = function (xy, size, ...more) {
+      const here = this.context.getTransform();
+      for (let i = 0; i < xy.length; i += 2) track.push(here.transformPoint({x: xy[i], y: xy[i + 1]}));
+      dots.call(this, xy, size, ...more);
+    };
     CanvasPen.prototype.text = function (x, y, words, style) {
       const {size = 12, align = 'start', weight = 400, turn = 0} = style;
       const width = textWidth(words, size, weight);
@@ -59,9 +63,15 @@
       text.call(this, x, y, words, style);
     };
     panel.draw();
-    CanvasPen.prototype.text = text;
+    Object.assign(CanvasPen.prototype, {text, dots});
     const where = `picture '${panel.item.title}'`;
-    for (const box of drawn) expectInside(box, panel.canvas.width, panel.canvas.height, where);
+    for (const box of drawn) {
+      const {left, right, top, bottom, words} = box;
+      expectInside(box, panel.canvas.width, panel.canvas.height, where);
+      if (words.includes('…')) faults.push(`${where}: '${words}' is shortened`);
+      if (panel.item.kind === 'track' && track.some(({x, y}) => x > left && x < right && y > top && y < bottom))
+        faults.push(`${where}: '${words}' is on the track`);
+    }
     expectApart(drawn, where);
   }
   return faults;

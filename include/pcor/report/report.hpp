@@ -241,8 +241,9 @@ struct WhatIfCommands {
 struct WhatIfPanel {
   std::string title;
   std::string caption;
+  std::string details{};              ///< folded below the panel
   std::string residual;               ///< column of the initial residual
-  std::string start = "given model";  ///< label of the initial model
+  std::string start = "input model";  ///< label of the initial model
   /// True: the initial coefficients were fitted to the same samples, so they have no rms on unused samples.
   bool is_start_fitted = false;
   /// Coefficients of the model, followed by those of the effects.
@@ -274,6 +275,7 @@ struct ReportTable {
 struct ReportText {
   std::string title;
   std::vector<std::string> paragraphs;
+  std::string details{};  ///< folded below the paragraphs
 };
 
 using ReportItem =
