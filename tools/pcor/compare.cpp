@@ -11,10 +11,9 @@
 
 #include <pcor/base/utc.hpp>
 #include <pcor/compare/comparison_report.hpp>
-#include <pcor/effects/catalogue.hpp>
-#include <pcor/fit/refit.hpp>
 #include "communicator.hpp"
 #include "comparison.hpp"
+#include "comparison_advice.hpp"
 #include "flight_table.hpp"
 #include "model_name.hpp"
 #include "model_selector.hpp"
@@ -23,14 +22,6 @@
 
 namespace pcor::tool {
 namespace {
-
-struct CompareArguments {
-  CommonOptions common;
-  ComparisonOptions comparison;
-  std::vector<std::string> models;
-  std::string residuals;
-  std::string table;
-};
 
 constexpr std::size_t name_width = 32;  // first column
 
@@ -140,8 +131,10 @@ void print_short(const Comparison& comparison, const RowNames& rows) {
     if (!is_single) continue;
     std::size_t of_further = 0;
     for (const Comparison& further : comparison.further) of_further += further.models.front().regimes.size();
-    const bool is_alone = comparison.further.empty();
-    print_parts(shown_parts(model, is_alone ? 5 : 3, is_alone ? 2 : 0), of_further);
+    const std::size_t others = std::min<std::size_t>(comparison.further.size(), 4);  // each prints one line
+    print_parts(
+        shown_parts(model, others == 0 ? 5 : std::min<std::size_t>(3, 5 - others), others == 0 ? 2 : 0),
+        of_further);
   }
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models) {
@@ -226,208 +219,6 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
   }
   if (!comparison.further.empty()) rows.print_numbers();
   for (const Comparison& further : comparison.further) print_further(further, rows);
-}
-
-bool changes_total_pressure(const ModelEffect& effect) {
-  if (effect.is_surface()) return false;
-  const EffectLocation location = effect.is_formula() ? effect.location : effect_named(effect.id)->location;
-  return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
-         location == EffectLocation::total_line || location == EffectLocation::pitot;
-}
-
-/// Whether an effect of the model changes the residual by a reference: static defects cancel in total
-/// pressures.
-bool can_refit(const ComparedModel& compared, const std::string& reference) {
-  const auto sees = [&reference](const auto& each) {
-    return each->name() == reference && each->sees_static_defect();
-  };
-  return std::any_of(compared.references.begin(), compared.references.end(), sees) ||
-         std::any_of(compared.model.model.effects.begin(), compared.model.model.effects.end(),
-                     changes_total_pressure);
-}
-
-/// Effects that no reference determines: static defects cancel in total pressures.
-std::vector<std::string> undetermined_effects(const ComparedModel& compared) {
-  std::vector<std::string> ids;
-  const bool sees_static_defect =
-      std::any_of(compared.references.begin(), compared.references.end(),
-                  [](const auto& reference) { return reference->sees_static_defect(); });
-  if (sees_static_defect) return ids;
-  for (const ModelEffect& effect : compared.model.model.effects) {
-    if (!changes_total_pressure(effect)) ids.push_back(effect.id);
-  }
-  return ids;
-}
-
-/// Mean error of delta-p by GPS, with the name of the model.
-using Levels = std::vector<std::pair<std::string, LevelByGps>>;
-
-/// Null if GPS was not requested.
-const LevelByGps* level_of(const Levels& levels, const std::string& model) {
-  const auto found =
-      std::find_if(levels.begin(), levels.end(), [&model](const auto& each) { return each.first == model; });
-  return found == levels.end() ? nullptr : &found->second;
-}
-
-std::string correction_text(const LevelByGps& level) {
-  return fmt::format("{:+.2f} +- {:.2f} hPa", level.missing, level.standard_error);
-}
-
-/// JSON result of the command.
-struct ComparisonWithGps {
-  Comparison comparison{};
-  Levels levels{};
-};
-
-/// Whether the rms is close to the noise; the largest ratio by all references decides.
-bool is_close_to_noise(const ModelComparison& worst) { return worst.noise_ratio() < 1.15; }
-
-template <class Field>
-void describe(const ComparisonWithGps& self, Field& field) {
-  describe(self.comparison, field);
-  field.list("worst_references", self.comparison.models, "reference with the largest ratio, for each model",
-             [&self](const ModelComparison& model, Field& of_one) {
-               const ModelComparison& worst = worst_by_noise(self.comparison, model);
-               of_one("name", model.name, "name of the model");
-               of_one("reference", worst.reference, "reference; wind and height only if there are no others");
-               if (!of_one.has(!std::isnan(worst.noise_ratio()))) return;
-               of_one("rms_over_noise", worst.noise_ratio(),
-                      "rms residual divided by the rms noise; absent by GPS");
-               of_one("close_to_noise", is_close_to_noise(worst), "whether the ratio is less than 1.15");
-             });
-  if (!field.has(!self.levels.empty())) return;
-  field.list("by_gps", self.levels, "error of delta-p by GPS; absent if not requested",
-             [](const auto& each, Field& level) {
-               level("model", each.first, "name of the model");
-               level("missing_hpa", each.second.missing, "mean correction of delta-p");
-               level("stderr_hpa", each.second.standard_error, "standard error of the correction");
-             });
-}
-
-// hPa, error of delta-p of a model that is worth applying: the rms of the published laws
-// (data/models/README.md).
-constexpr double max_model_error = 0.3;
-
-/// Evidence about a model, best first.
-enum class Support { supported, undecided, refuted };
-
-/// Whether the residuals are consistent with the model. By GPS the error of its delta-p and two standard
-/// errors are small; the rms of all residuals not by GPS is close to the noise. Effects with zero
-/// coefficients correct nothing, which a reference that determines the level shows. @param worst of all
-/// references
-Support support_of(const ModelComparison& worst, const ModelDefinition& model, const Levels& levels) {
-  const LevelByGps* const level = level_of(levels, worst.name);
-  if (worst.is_by_gps() && level != nullptr && !level->is_determined()) return Support::undecided;
-  const std::vector<ModelEffect>& effects = model.model.effects;
-  const bool is_zero = std::all_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
-    return !effect.is_surface() && std::all_of(effect.parameters.begin(), effect.parameters.end(),
-                                               [](double value) { return value == 0.0; });
-  });
-  if (is_zero && !effects.empty()) return Support::refuted;
-  if (level != nullptr) {
-    const double margin = 2.0 * level->standard_error;
-    const bool is_small = std::abs(level->missing) + margin <= max_model_error;
-    const bool is_off = std::abs(level->missing) > margin && level->is_determined();
-    if (is_off && !is_small) return Support::refuted;
-    if (worst.is_by_gps()) return is_small ? Support::supported : Support::undecided;
-  }
-  if (worst.is_by_gps()) return Support::undecided;
-  return is_close_to_noise(worst) ? Support::supported : Support::refuted;
-}
-
-/// Next step: a model is applied or refitted, that with the smallest rms. An rms by GPS contains gusts: there
-/// it is the first model with the best support.
-std::string next_step(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
-                      const CompareArguments& options) {
-  const Comparison& comparison = result.comparison;
-  const auto definition_of = [&models](const ModelComparison& model) {
-    return std::find_if(models.begin(), models.end(),
-                        [&model](const ComparedModel& each) { return each.name == model.name; });
-  };
-  const auto support = [&](const ModelComparison& model) {
-    return support_of(worst_by_noise(comparison, model), definition_of(model)->model, result.levels);
-  };
-  const auto rank = [&](const ModelComparison& model) {
-    const LevelByGps* const level = level_of(result.levels, model.name);
-    return std::pair(support(model), level == nullptr ? 0.0 : std::abs(level->missing));
-  };
-  const bool by_gps = comparison.models.front().is_by_gps();
-  const auto best = std::min_element(comparison.models.begin(), comparison.models.end(),
-                                     [&](const ModelComparison& a, const ModelComparison& b) {
-                                       return by_gps ? rank(a) < rank(b) : a.all.rms < b.all.rms;
-                                     });
-  const auto compared = definition_of(*best);
-  const std::string& model = options.models[static_cast<std::size_t>(compared - models.begin())];
-  std::string which;
-  if (comparison.models.size() > 1)
-    which = by_gps ? "An rms by GPS does not rank models. " : best->name + " has the smallest rms. ";
-  const ModelComparison& worst = worst_by_noise(comparison, *best);
-  const auto ratio_of = [](const ModelComparison& each) {
-    return fmt::format("{:.1f} times the noise by {}", each.noise_ratio(), each.reference);
-  };
-  const std::string ratio =
-      comparison.further.empty() || std::isnan(worst.noise_ratio()) ? "" : ratio_of(worst);
-  const LevelByGps* const level = level_of(result.levels, best->name);
-  const bool is_determined = level != nullptr && level->is_determined();
-  const std::string correction =
-      is_determined ? "needs a mean correction of " + correction_text(*level) : std::string();
-  if (support(*best) == Support::supported) {
-    return fmt::format("{}{}. To apply it: {}", which,
-                       by_gps ? fmt::format("By GPS {} {}, which with two standard errors is within {} hPa",
-                                            best->name, correction, max_model_error)
-                              : fmt::format("The residual of {} is close to the noise{}", best->name,
-                                            ratio.empty() ? "" : ", at most " + ratio),
-                       process_command(options.comparison.flights, compared->model, model,
-                                       options.comparison.timestamp_alignment));
-  }
-  if (support(*best) == Support::undecided) {
-    return fmt::format(
-        "{}GPS cannot tell whether {} is right{}. To test it, give flights with circles or reverse headings "
-        "and --reference wind, or another --reference",
-        which, comparison.models.size() > 1 ? "one of the models" : best->name,
-        is_determined
-            ? fmt::format(": {} {}, which with two standard errors exceeds {} hPa",
-                          comparison.models.size() > 1 ? best->name : "it", correction, max_model_error)
-            : "");
-  }
-  if (by_gps && compared->model.model.effects.empty()) {
-    return fmt::format(
-        "GPS does not support {}, which has no coefficient to refit; add an effect, or give another "
-        "--reference",
-        best->name);
-  }
-  if (!(best->all.rms > 0.0))
-    return fmt::format("The residual of {} is zero and tests nothing; give another --reference", best->name);
-  const bool is_beyond_refit =
-      &worst != &*best && !is_close_to_noise(worst) && !can_refit(*compared, worst.reference);
-  if (is_beyond_refit && !is_close_to_noise(*best) && !std::isnan(best->noise_ratio()))
-    which += fmt::format("The rms is {}, and {}, which a refit does not change. ", ratio_of(*best), ratio);
-  else if (!is_close_to_noise(worst) && !ratio.empty())
-    which += fmt::format("The rms is {}. ", ratio);
-  const std::string arguments =
-      fmt::format("{} -m {}", advised_command_line(options.comparison), model_argument(model));
-  if (is_beyond_refit && is_close_to_noise(*best)) {
-    return fmt::format("{}A refit does not change it. To find the error: {} diagnose {}", which, program(),
-                       arguments);
-  }
-  const std::vector<std::string> undetermined = undetermined_effects(*compared);
-  if (!undetermined.empty() && undetermined.size() == compared->model.model.effects.size()) {
-    return fmt::format(
-        "{}Static defects cancel in the total pressure, so a refit to it cannot determine {}; compare it "
-        "with a static pressure, for example --reference static:OTHER.toml",
-        which, best->name);
-  }
-  const std::vector<std::filesystem::path> inputs = input_files(options.comparison, options.models);
-  std::string refit =
-      fmt::format("{} refit {} -o {}", program(), arguments, output_file("fitted.toml", inputs));
-  for (const std::string& id : undetermined) refit += " --fix " + shell_quote(id);
-  if (is_verbose() && comparison.total_pressure && comparison.is_static_pressure) {
-    return fmt::format(
-        "{0}To refit its coefficients: {1}\nTo refit both systems together: {1} --refit-reference {2}", which,
-        refit, output_file("fitted-reference.toml", inputs));
-  }
-  return fmt::format("{}To refit {}: {}", which, by_gps && !which.empty() ? best->name : "its coefficients",
-                     refit);
 }
 
 void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
