@@ -93,7 +93,7 @@ def _steps(result: Any, ax: Any) -> None:
         if any(value is not None for value in rms):
             ax.plot(places, [np.nan if value is None else value for value in rms], "o-", label=label)
     ax.plot(places[1:], [step.noise_rms_hpa for step in steps], "k:", label="noise")
-    ax.set_xticks(places, ["given model", *(step.added or "refitted" for step in steps)], rotation=20, ha="right")
+    ax.set_xticks(places, ["input model", *(step.added or "refitted" for step in steps)], rotation=20, ha="right")
     ax.set(ylabel="rms residual, hPa", ylim=(0, None))
     ax.legend(fontsize="small")
 

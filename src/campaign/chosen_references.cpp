@@ -106,10 +106,9 @@ void require_laser(const ModelDefinition& model, const FlightSet& flights) {
   throw Error(
       Error::Code::model,
       fmt::format(
-          "{}: the reference lams (the default) needs the laser {}, which the model '{}' does not "
-          "name; copy the model and add lams_airspeed = \"{}\" and the attack to its "
-          "[variables], or give --reference static:OTHER.toml, total:PS+QC, pressure:PS, height or wind",
-          flights.name(static_cast<std::size_t>(laser - lasers.begin())), *laser, model.model.name, *laser));
+          "{}: the model does not name the laser; add lams_airspeed = \"{}\" and the attack to [variables] "
+          "of a copy of it, or give --reference static:OTHER.toml, pressure:PS, wind or height",
+          flights.name(static_cast<std::size_t>(laser - lasers.begin())), *laser));
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class ReferenceDoubt {
                           const std::vector<std::size_t>& samples, const double* parameters = nullptr) const;
 
  private:
-  std::size_t model_parameters_;      // number of parameters of the given model
+  std::size_t model_parameters_;      // number of parameters of the input model
   std::size_t reference_parameters_;  // number of parameters of the reference's model
   ModelDefinition model_;             // model with the effects of its uncertainties
   std::shared_ptr<const Reference> reference_;

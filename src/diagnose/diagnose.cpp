@@ -116,7 +116,7 @@ double noise_with_findings(const FlightPartition& share, const std::vector<Fligh
   return sums.statistics().noise_rms;
 }
 
-/// Residual of the given model on a flight.
+/// Residual of the input model on a flight.
 struct GivenStatistics {
   ResidualSums used{};
   ResidualSums with_flaps{};
@@ -149,7 +149,7 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
   return found;
 }
 
-/// Residuals of the given model: used samples, later parts of the flights, and samples with flaps out.
+/// Residuals of the input model: used samples, later parts of the flights, and samples with flaps extended.
 void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnosis) {
   ResidualSums used;
   ResidualSums with_flaps;
@@ -246,7 +246,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
-    diagnosis.notes.push_back(fmt::format("{} samples after the training share of the flights were not used",
+    diagnosis.notes.push_back(fmt::format("{} samples after the training share of the flights are held out",
                                           diagnosis.masks[0] - diagnosis.samples));
   }
   if (diagnosis.samples < min_samples) {
@@ -254,7 +254,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
         Error::Code::samples,
         fmt::format(
             "{} usable samples, at least {} required: {}; add flights, give another --reference, or relax "
-            "--min-airspeed, --max-flaps, --exclude",
+            "--min-airspeed, --max-flaps or --exclude",
             diagnosis.samples, min_samples, mask_text(diagnosis.masks)));
   }
   const FlapsCandidates flaps = find_flaps_candidates(set, columns);

@@ -45,9 +45,9 @@ std::string how_large(const Finding& finding, const Law& law) {
   if (const double ratio = size_to_usual(finding.estimates); ratio > 0.0) text += ", " + times_usual(ratio);
   text += ".";
   if (!law.size.empty()) text += fmt::format(" Sizes met in practice: {}.", law.size);
-  text += fmt::format(" The model does not absorb {} of it", finding.size_text());
+  text += fmt::format(" The model does not absorb {} of the effect", finding.size_text());
   if (!finding.worst_flight.empty() && std::isfinite(finding.worst)) {
-    text += fmt::format("; the effect alone is at most {:+.3f} hPa, in {} at {} UTC", finding.worst,
+    text += fmt::format("; alone the effect is at most {:+.3f} hPa, in {} at {} UTC", finding.worst,
                         finding.worst_flight, utc_text(finding.worst_time));
   }
   return text + ".";
@@ -60,8 +60,8 @@ std::string how_sure(const Finding& finding, double threshold) {
       finding.chi2, threshold, probability(finding.p_value));
   if (finding.events > 0.0) {
     text += finding.events < 1.5
-                ? " It depends on a single event."
-                : fmt::format(" It depends on about {:.0f} separate events.", finding.events);
+                ? " The evidence is a single event."
+                : fmt::format(" The evidence is about {:.0f} separate events.", finding.events);
   }
   std::vector<std::string> segments;
   for (const Evidence& evidence : finding.evidence) {
@@ -71,7 +71,7 @@ std::string how_sure(const Finding& finding, double threshold) {
                                    evidence.regimes.empty() ? "" : fmt::format(" ({})", evidence.regimes),
                                    percent(evidence.share)));
   }
-  if (!segments.empty()) text += fmt::format(" Most of it lies in {}.", fmt::join(segments, "; "));
+  if (!segments.empty()) text += fmt::format(" Most of the evidence lies in {}.", fmt::join(segments, "; "));
   return text;
 }
 
@@ -91,7 +91,7 @@ std::string rivals(const Finding& finding, const Law& law) {
     for (const Alias& alias : finding.aliases) {
       if (all.size() < max_in_a_sentence) all.push_back(rival(alias));
     }
-    text = fmt::format("These flights cannot distinguish it from {}", fmt::join(all, "; "));
+    text = fmt::format("These flights cannot distinguish the effect from {}", fmt::join(all, "; "));
     if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
       text += fmt::format("; and {} more, which the ranking lists", more);
     text += ".";
@@ -99,7 +99,7 @@ std::string rivals(const Finding& finding, const Law& law) {
   if (!finding.advice.sentence.empty()) {
     text += " " + sentence(finding.advice.sentence);
   } else if (!law.confounders.empty()) {
-    text += fmt::format(" In general it is easily mistaken for {}", law.confounders);
+    text += fmt::format(" In general the effect resembles {}", law.confounders);
     text += law.manoeuvre.empty() ? "." : fmt::format("; to separate them: {}.", law.manoeuvre);
   }
   return text;
@@ -116,8 +116,8 @@ std::string with_error(double value, double error) {
   if (!std::isfinite(value)) return "unknown";
   if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
   const int decimals = decimals_of_error(error);
-  return decimals > most_decimals ? fmt::format("{:.3g} ± {:.2g}", value, error)
-                                  : fmt::format("{0:.{2}f} ± {1:.{2}f}", value, error, decimals);
+  return decimals > most_decimals ? fmt::format("{:.3g} +- {:.2g}", value, error)
+                                  : fmt::format("{0:.{2}f} +- {1:.{2}f}", value, error, decimals);
 }
 
 std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.3f}", value) : "unknown"; }
@@ -165,33 +165,32 @@ std::string finding_summary(const Finding& finding) {
   }
   if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
     all.push_back(fmt::format("{} more", more));
-  text += fmt::format(" These flights cannot distinguish it (probability {}) from {}.",
+  text += fmt::format(" These flights cannot distinguish the effect (probability {}) from {}.",
                       percent(finding.probability), join_list(all));
   return finding.advice.sentence.empty() ? text : text + " " + sentence(finding.advice.sentence);
 }
 
 std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   if (!unexplained.significant) return {};
-  std::string what =
-      fmt::format("Structure of {} hPa rms is not explained by any effect", hpa(unexplained.rms));
-  if (!unexplained.regime.empty())
-    what += fmt::format("; the residual is largest in the regime {}", unexplained.regime);
+  std::string what = fmt::format("Unexplained residual: {} hPa rms", hpa(unexplained.rms));
+  if (!unexplained.regime.empty()) what += fmt::format(", largest in the regime {}", unexplained.regime);
   what += fmt::format(". Probability by chance: {}.", probability(unexplained.p_value));
   if (unexplained.drift_rms > 0.0) {
     what += fmt::format(" The slow part is {} hPa.", hpa(unexplained.drift_rms));
   }
   std::vector<std::string> all{what};
   if (unexplained.variables.empty()) {
-    all.emplace_back("It is not correlated with any tested variable of the files.");
+    all.emplace_back("The residual is not correlated with any tested variable of the files.");
   } else {
     const EmpiricalPredictor& first = unexplained.variables.front();
-    std::string with = fmt::format("It varies with {}, which explains {} of the residual's variance",
+    std::string with = fmt::format("The residual varies with {}: a curve explains {} of its variance",
                                    name_with_id(first.description, first.name), percent(first.r2));
     if (first.slope_error > 0.0) {
       with +=
-          fmt::format(" (a straight line {}: {})", percent(first.linear_r2),
+          fmt::format(", a straight line ({}) {}",
                       with_unit(with_error(first.slope, first.slope_error),
-                                first.unit.empty() || first.unit == "1" ? "hPa" : "hPa per " + first.unit));
+                                first.unit.empty() || first.unit == "1" ? "hPa" : "hPa per " + first.unit),
+                      percent(first.linear_r2));
     }
     with += ".";
     if (!first.sampling.empty()) with += fmt::format(" Values used: {}.", first.sampling);
@@ -213,8 +212,8 @@ ReportText finding_page(const Finding& finding, double threshold, const std::str
   ReportText page{heading, {what_it_is(finding, law), how_large(finding, law), how_sure(finding, threshold)}};
   if (std::isfinite(finding.rms_before) && std::isfinite(finding.rms_after)) {
     page.paragraphs.push_back(
-        fmt::format("On parts outside the fit the rms residual {} from {} to {} hPa.",
-                    finding.rms_after < finding.rms_before ? "falls" : "does not fall: it changes",
+        fmt::format("On held-out parts the rms of the residual {} from {} to {} hPa.",
+                    finding.rms_after < finding.rms_before ? "decreases" : "does not decrease: it changes",
                     hpa(finding.rms_before), hpa(finding.rms_after)));
   }
   page.paragraphs.push_back(rivals(finding, law));

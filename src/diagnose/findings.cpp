@@ -23,7 +23,8 @@ namespace pcor::internal {
 namespace {
 
 constexpr double two_sided_95 = 1.959963984540054;  // standard deviations of a normal distribution
-constexpr double alias_margin = 9.0;  // probability of 0.13 % that one rival beats the true effect
+constexpr double alias_margin =
+    9.0;  // chi2 of three standard deviations: a rival exceeds the true effect with probability 0.13 %
 constexpr std::size_t most_evidence = 6;
 
 /// Parameters that these flights determine; the model's coefficients imitate the others.
@@ -139,16 +140,16 @@ bool is_one_of(const std::string& effect, const std::vector<std::size_t>& chosen
 /// Loss of likelihood if one effect of the chosen set is replaced by another.
 struct Rival {
   std::size_t group;
-  double less;  ///< decrease of the logarithm of the marginal likelihood, in the shapes of the catalogue
-  double less_uncertain;  ///< the same if the shape of the chosen effect is uncertain, for both
+  double decrease;  ///< decrease of the logarithm of the marginal likelihood, in the shapes of the catalogue
+  double decrease_if_uncertain;  ///< the same if the shape of the chosen effect is uncertain, for both
 };
 
 /// Part of an effect's chi2 in references where a rival differs from it: the effect's contribution against
 /// each reference before absorption by the base, weighted by the share of the difference of the two fits. At
 /// most the effect's chi2.
 ///
-/// The catalogue describes the shape of an effect only to about 10 %. The shape error can favour a rival only
-/// against a reference in which the two differ; equal contributions favour neither.
+/// The error of an effect's shape can favour a rival only against a reference in which the two differ; equal
+/// contributions favour neither.
 ///
 /// @param others remaining effects in both fits
 double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::size_t>& others,
@@ -176,11 +177,11 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
   return std::min(chi2, whole);
 }
 
-/// Groups that may replace a chosen one. The catalogue describes the shape of an effect only to about 10 %,
-/// so a rival of a strong effect may fit better by chance.
+/// Groups that may replace a chosen one: for a strong effect also some that fit better, because its shape is
+/// uncertain.
 std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                              std::size_t winner, const std::vector<std::size_t>& chosen) {
-  constexpr double doubt_of_shape = 0.1;
+  constexpr double doubt_of_shape = 0.1;  // relative error of the shapes in the catalogue
   const Search& search = analysis.search();
   const auto margin = [](double chi2) {
     return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
@@ -195,9 +196,9 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
     if (g == winner || search.is_absorbed(g) || is_one_of(candidates[g].id, others, candidates)) continue;
     if (!search.score(g, others).possible) continue;
     const std::vector<std::size_t> instead = set_with(others, g);
-    const double less = best - search.evidence(instead, others);
-    if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
-      rivals.push_back({g, less, best_uncertain - search.evidence(instead, chosen)});
+    const double decrease = best - search.evidence(instead, others);
+    if (decrease < widest && decrease < margin(chi2_where_they_differ(analysis, others, winner, g)))
+      rivals.push_back({g, decrease, best_uncertain - search.evidence(instead, chosen)});
   }
   return rivals;
 }
@@ -209,7 +210,8 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
   const GroupScore best = search.score(winner, chosen);
   const std::vector<std::size_t> others = set_without(chosen, winner);
   const double noisier = search.variance(others) / search.variance(chosen);
-  std::sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) { return a.less < b.less; });
+  std::sort(rivals.begin(), rivals.end(),
+            [](const Rival& a, const Rival& b) { return a.decrease < b.decrease; });
   std::vector<Alias> aliases;
   std::set<std::string> seen{candidates[winner].id};
   for (const Rival& rival : rivals) {
@@ -315,7 +317,7 @@ std::string component_of(const Candidate& candidate) {
                                      : info_of(candidate.effect.location).component);
 }
 
-/// Family, locations, shapes, size and probability of a finding.
+/// Family, locations, shapes, size and probability of a finding; equal prior odds for all rivals.
 void describe(const std::vector<Candidate>& candidates, std::size_t winner, const std::vector<Rival>& rivals,
               Finding& finding) {
   const Candidate& winning = candidates[winner];
@@ -333,7 +335,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
         finding.components.end())
       finding.components.push_back(component);
     Eigen::Array2d& weight = weights.try_emplace(candidate.id, Eigen::Array2d::Zero()).first->second;
-    weight = weight.max(Eigen::Array2d(std::exp(-rival.less), std::exp(-rival.less_uncertain)));
+    weight = weight.max(Eigen::Array2d(std::exp(-rival.decrease), std::exp(-rival.decrease_if_uncertain)));
   }
   Eigen::Array2d sum = Eigen::Array2d::Zero();
   for (const auto& [id, weight] : weights) sum += weight;
@@ -558,11 +560,10 @@ void doubt_by_size(Diagnosis& diagnosis) {
         predicts_held_out_parts(finding))
       continue;
     finding.rival = "an unknown error";
-    diagnosis.notes.push_back(warning_note(
-        fmt::format("{} is {:.2g} times its usual size and does not clearly predict held-out parts (chi2 "
-                    "falls by {:.0f} +- "
-                    "{:.0f}): look for a wrong entry in the model, a wrong unit or another cause first",
-                    finding.id(), finding.times_usual, finding.gain, finding.gain_error)));
+    diagnosis.notes.push_back(warning_note(fmt::format(
+        "look for a wrong entry or unit in the model or another cause first: {} is {:.2g} times its "
+        "usual size; decrease of chi2 of held-out parts {:.0f} +- {:.0f}, not significant",
+        finding.id(), finding.times_usual, finding.gain, finding.gain_error)));
   }
 }
 

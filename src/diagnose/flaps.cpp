@@ -32,7 +32,7 @@ bool looks_like_flaps(const ModelEffect& effect) {
          has_confounder(*effect_named(flaps_effect), effect.id);
 }
 
-/// Residual of all samples, including those with flaps out.
+/// Residual of all samples, including those with flaps extended.
 std::vector<double> all_given(const FlightColumns& flight) {
   std::vector<double> given = flight.given;
   for (std::size_t i = 0; i < given.size(); ++i) {

@@ -10,7 +10,7 @@
 
 namespace pcor::internal {
 
-/// Effects of flaps and gear, and effects that resemble them, on all samples. Samples with flaps out are
+/// Effects of flaps and gear, and effects that resemble them, on all samples. Samples with flaps extended are
 /// included although fits of a model without such an effect exclude them.
 struct FlapsCandidates {
   std::vector<Candidate> candidates{};
@@ -18,7 +18,7 @@ struct FlapsCandidates {
   std::vector<Eigen::MatrixXf> columns{};  ///< one per flight; no rows for remote flights
 };
 
-/// Without candidates if too few samples have flaps out.
+/// Without candidates if too few samples have flaps extended.
 FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns);
 
 /// Tests them together with the model and the findings of `analysis`, and adds the result or its upper limit

@@ -444,20 +444,20 @@ void doubt_by_atmosphere(Diagnosis& diagnosis) {
   for (Finding& finding : diagnosis.findings) {
     if (predicts_held_out_parts(finding)) continue;
     finding.rival = "the atmosphere";
-    diagnosis.notes.push_back(warning_note(fmt::format(
-        "variations of the atmosphere may be the cause instead of {}: it decreases chi2 of held-out parts "
-        "by {:.0f} +- {:.0f}; give a laser or a second system as a further reference",
-        finding.id(), finding.gain, finding.gain_error)));
+    diagnosis.notes.push_back(
+        warning_note(fmt::format("confirm {} with a laser or a second system: variations of the atmosphere "
+                                 "may be the cause; decrease of chi2 of held-out parts {:.0f} +- {:.0f}",
+                                 finding.id(), finding.gain, finding.gain_error)));
   }
 }
 
 /// Withdraws the findings if a straight line in one variable of the files is more likely than they are.
 void overrule(Diagnosis& diagnosis, const std::string& variable) {
   for (const Finding& finding : diagnosis.findings) {
-    diagnosis.notes.push_back(
-        fmt::format("{} is not reported as the cause: a straight line in {} is more "
-                    "likely, with a probability above 95 %",
-                    finding.id(), variable));
+    diagnosis.notes.push_back(fmt::format(
+        "{} is not reported as the cause: a straight line in {} is more likely (probability above "
+        "95 %)",
+        finding.id(), variable));
   }
   diagnosis.findings.clear();
   for (FlightDiagnosis& flight : diagnosis.flights) {
@@ -503,8 +503,8 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
   if (gps_kind(*references.front())) {
     doubt_by_atmosphere(diagnosis);
     diagnosis.notes.emplace_back(
-        "unnamed structure was not tested, because atmospheric variations in a comparison with GPS look the "
-        "same; give a laser or a second system as a further reference");
+        "give a laser or a second system as a further reference to test unnamed structure; variations of the "
+        "atmosphere look the same in a comparison with GPS");
     return 0.0;
   }
   Unexplained& found = diagnosis.unexplained;
@@ -558,10 +558,10 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
     overrule(diagnosis, line.variable);
   } else if (line.log_odds > -sure) {
     diagnosis.rival = line.variable;
-    diagnosis.notes.push_back(
-        fmt::format("a straight line in {} may be the cause instead of the effects: its "
-                    "probability is between 5 and 95 %",
-                    diagnosis.rival));
+    diagnosis.notes.push_back(fmt::format(
+        "a straight line in {} may be the cause instead of the effects (probability between 5 and "
+        "95 %)",
+        diagnosis.rival));
   }
   return left;
 }

@@ -176,13 +176,13 @@ void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_
 }
 
 std::string note_of(const Candidate& candidate, const std::string& flaps_variable) {
-  if (candidate.is_of_reference())
-    return "It is an error of the reference system: do not change the model for it.";
+  if (candidate.is_of_reference()) return "An error of the reference system: do not change the model.";
   if (candidate.is_shared)
-    return "It is the same on the reference system, which a model file cannot represent: the "
-           "command adds it to the model only.";
+    return "The reference system has the same error, which a model file cannot represent: the command adds "
+           "the effect to the model only.";
   if (reads_flaps(candidate.effect, flaps_variable))
-    return "Here only samples with flaps in are used; a refit with it also uses samples with flaps out.";
+    return "Only samples with flaps retracted are used here; a refit with this effect also uses samples with "
+           "flaps extended.";
   return "";
 }
 

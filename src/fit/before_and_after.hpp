@@ -13,9 +13,9 @@ namespace pcor::internal {
 
 /// Sums over the fitted samples of the first reference.
 struct FitSums {
-  ResidualSums before{};  ///< residuals with the coefficients of the files
+  ResidualSums before{};  ///< residuals with the input models
   ResidualSums after{};
-  double bulk_squares_before = 0.0;  ///< robust deviation with the coefficients of the files, hPa^2
+  double bulk_squares_before = 0.0;  ///< robust deviation with the input models, hPa^2
   double bulk_squares = 0.0;
   double relative_squares = 0.0;  ///< residual over static pressure
   double reference_defect = 0.0;  ///< delta-p implied by the reference, hPa
@@ -53,7 +53,7 @@ struct OutlierRun {
   }
 };
 
-/// The flights with the coefficients of the files and with those of the fit.
+/// The flights with the input models and with the fit.
 struct BeforeAndAfter {
   FitSums sums{};
   OutlierRun longest_run{};  ///< fitted samples, first reference
@@ -64,7 +64,8 @@ struct BeforeAndAfter {
 /// @param covariance of the fitted parameters, without the uncertainty of the reference, which is common to
 /// the held-out samples
 /// @param left misfit of the law, hPa, rms
-/// @param result receives the statistics of the flights with each reference, and of samples with flaps out
+/// @param result receives the statistics of the flights with each reference, and of samples with flaps
+/// extended
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
                                 const Eigen::MatrixXd& covariance, double left, RefitResult& result);
 

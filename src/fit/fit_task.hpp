@@ -22,7 +22,7 @@ struct FitParameter {
   double neutral = 0.0;  ///< value that disables the effect
   double typical = 0.0;  ///< size; zero if the catalogue has no typical size
   std::string_view manoeuvre{};
-  std::vector<double> tried{};  ///< other possible values of a time over which a need is estimated
+  std::vector<double> tried{};  ///< values of a time constant from which the fit is started, too
   Bounds bounds{};
   bool fixed = false;
 };

@@ -396,7 +396,7 @@ class GpsSolver {
       }
       names.push_back(fmt::format("{}", fmt::join(some, " against ")));
     }
-    return fmt::format("{}", fmt::join(names, "; "));
+    return fmt::format("{}", fmt::join(names, ", "));
   }
 
   /// The columns lack the fastest part of the flow angles: in manoeuvres of less than 4 s the iteration can
@@ -406,30 +406,27 @@ class GpsSolver {
     constexpr double small = 0.03;   // hPa, noise of a sensor
     const double change = error_along(last_step);
     if (change < std::max(small, notable * determined_)) return;
-    fit.warnings.push_back(fmt::format(
-        "the fit by GPS did not converge: its last step changed delta-p by {:.2f} hPa (rms); exclude the "
-        "fastest manoeuvres with an intervals file, or fit their coefficients with a laser",
-        change));
+    fit.warnings.push_back(
+        fmt::format("exclude the fastest manoeuvres (--intervals) or fit their coefficients with a laser: "
+                    "the fit by GPS did not converge; its last step changed delta-p by {:.2f} hPa (rms)",
+                    change));
   }
 
   void add_notes(GpsFit& fit) const {
-    const std::string_view what_tells =
+    const std::string_view manoeuvres =
         std::any_of(flights_.begin(), flights_.end(),
                     [](const FitFlights* each) { return gps_kind(each->task().reference) == GpsKind::wind; })
-            ? "four circles of one bank, or reverse headings, for the level; a speed run for the change with "
-              "the airspeed; a pitch manoeuvre for the attack term"
-            : "--reference wind with circles or reverse headings, for the level; a speed run or a pitch "
-              "manoeuvre for the rest";
+            ? "circles or reverse headings (level), a speed run (airspeed), a pitch manoeuvre (attack)"
+            : "--reference wind with circles or reverse headings (level), a speed run, a pitch manoeuvre";
     if (held_.cols() > 0) {
       fit.warnings.push_back(
-          fmt::format("the flights do not determine {}: delta-p was kept near the starting model, with an "
-                      "error of {:.2f} hPa; to determine it: {}",
-                      names_of(held_), error_of(doubt_of_held()), what_tells));
+          fmt::format("error of delta-p {:.2f} hPa: add {}; the flights do not determine {}, kept near the "
+                      "input model",
+                      error_of(doubt_of_held()), manoeuvres, names_of(held_)));
     }
     if (weak_.cols() > 0) {
-      fit.notes.push_back(
-          fmt::format("the flights hardly determine {}: kept near the starting values; to determine it: {}",
-                      names_of(weak_), what_tells));
+      fit.notes.push_back(fmt::format("add {}; the flights hardly determine {}, kept near the input model",
+                                      manoeuvres, names_of(weak_)));
     }
     const bool is_fitted = nuisance_deviation_[0] < gps_nuisances.front().deviation;
     const double thermometer = change_[count_];  // negative bias, K

@@ -17,10 +17,10 @@ struct GpsFit {
 };
 
 /// Fits the requested coefficients to GPS: maximum a posteriori, with the latent processes of `GpsNoise` and
-/// the nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start,
-/// some typical sizes of its effect wide. Directions in which the error of delta-p would be above 1 hPa are
-/// held: delta-p stays there as near to that of the start as the rest allows, and the error is that of the
-/// prior, or as the file states it.
+/// the nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start, a
+/// few typical sizes of its effect wide. Directions in which the error of delta-p would be above 1 hPa are
+/// fixed: delta-p stays as near to that of the input model as the rest allows, with the error of the prior or
+/// the error stated in the file.
 ///
 /// The stated covariance is that of the likelihood or that of a jackknife over parts of five minutes, the one
 /// with the larger error of delta-p.
@@ -33,9 +33,9 @@ struct GpsFit {
 /// does not depend on them, and so corrects them.
 /// @param flights for each reference of GPS the flights of the fit
 /// @param solution in: the start, or the result of the other references; out: values and bounds
-/// @param covariance in: covariance by the other references; empty without them. Out: all but `doubts`; the
-/// jackknife omits parts of five minutes; `by_noise` excludes held directions by GPS alone, and is the stated
-/// covariance after other references
+/// @param covariance in: covariance by the other references; empty if there are no other references. Out: all
+/// but `doubts`; the jackknife omits parts of five minutes; `by_noise` excludes held directions by GPS alone,
+/// and is the stated covariance after other references
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, Solution& solution, FitCovariance& covariance);
 
 }  // namespace pcor::internal

@@ -17,7 +17,7 @@ constexpr double hopeless_condition = 1e7;
 // Condition number of scaled columns; eq. 20 of the memo with an independent Mach number has 1400 on a flight
 // with speed runs.
 constexpr double collinear_condition = 300.0;
-// A standard error above this share of an effect's typical size is worth a word.
+// A standard error above this share of an effect's typical size is reported.
 constexpr double weak_share = 0.25;
 
 }  // namespace
@@ -87,26 +87,26 @@ std::vector<std::string> identifiability_notes(const FitTask& task, const Soluti
       partners += fmt::format("{}{} ({:+.3f})", partners.empty() ? "" : ", ",
                               task.parameters[fitted[static_cast<std::size_t>(b)]].name, correlation);
     }
-    words.push_back(
-        fmt::format("{} is {}: {:.3g} +- {:.2g} (typical size {:.2g}); to determine it: {}; or fix it with "
-                    "--fix {}{}{}",
-                    parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
-                    solution.values[as_index(position)], error, parameter.typical, parameter.manoeuvre,
-                    parameter.name, partners.empty() ? "" : "; it is correlated with ", partners));
+    words.push_back(fmt::format(
+        "{0} is {1}, {2:.3g} +- {3:.2g} (typical size {4:.2g}): --fix {0} fixes it; to determine it: "
+        "{5}{6}{7}",
+        parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
+        solution.values[as_index(position)], error, parameter.typical, parameter.manoeuvre,
+        partners.empty() ? "" : "; it is correlated with ", partners));
   }
   if (condition > collinear_condition) {
-    words.push_back(
-        fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is better "
-                    "determined than each; do not interpret one alone",
-                    condition));
+    words.push_back(fmt::format(
+        "do not interpret one coefficient alone: they are nearly collinear (condition number {:.0f}); "
+        "their sum is better determined than each",
+        condition));
   }
   const bool has_manoeuvre = flown[static_cast<std::size_t>(Regime::pitch_manoeuvre)] ||
                              flown[static_cast<std::size_t>(Regime::yaw_manoeuvre)] ||
                              flown[static_cast<std::size_t>(Regime::speed_run)];
   if (flown.any() && !has_manoeuvre) {
     words.emplace_back(
-        "coefficients may absorb missing effects: the flights have no pitch manoeuvre, yaw manoeuvre or "
-        "speed run; in climbs and slow changes, angle of attack, Mach number and weight are correlated");
+        "coefficients may absorb missing effects: add a flight with a pitch or yaw manoeuvre or a speed run; "
+        "these flights lack them; in climbs, angle of attack, Mach number and weight are correlated");
   }
   return words;
 }
@@ -115,13 +115,12 @@ std::vector<std::string> bound_notes(const FitTask& task, const Solution& soluti
   std::vector<std::string> words;
   for (std::size_t p = 0; p < solution.at_bound.size(); ++p) {
     if (!solution.at_bound[p]) continue;
-    words.push_back(
-        fmt::format("{} is at its bound {:.6g}; the unconstrained optimum lies outside, and the errors of "
-                    "the other coefficients are valid only if the bound is right; {}",
-                    task.parameters[p].name, solution.values[as_index(p)],
-                    condition > collinear_condition
-                        ? "the coefficients are nearly collinear, so fix one of them with --fix"
-                        : "if the bound is too narrow, widen it in the model file"));
+    words.push_back(fmt::format(
+        "{} is at its bound {:.6g}: {}; the unconstrained optimum lies outside, and the errors of "
+        "the other coefficients are valid only if the bound is right",
+        task.parameters[p].name, solution.values[as_index(p)],
+        condition > collinear_condition ? "fix one of the nearly collinear coefficients with --fix"
+                                        : "widen the bound in the model file if it is too narrow"));
   }
   return words;
 }

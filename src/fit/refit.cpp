@@ -311,10 +311,10 @@ Notes notes_of(const RefitResult& result, const FitTask& task, const Fitted& fit
   add(bound_notes(task, fitted.solution, result.condition_number));
   if (task.uses_prior()) {
     notes.emplace_back(
-        "a Gaussian prior at the starting value was applied to every coefficient, with the covariance from "
-        "the model file, otherwise with the typical size of the effect; combinations that the flights do not "
-        "determine, such as the common error of two static systems, keep the starting value and the prior's "
-        "error");
+        "every coefficient has a Gaussian prior at its starting value; the covariance is that of the "
+        "model file, otherwise the typical size of the effect; combinations that the flights do not "
+        "determine, such as the common error of two static systems, keep the starting value and the error of "
+        "the prior");
   }
   return notes;
 }
@@ -375,7 +375,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   task.tell();
   const FitSums& sums = compared.sums;
   result.samples = sums.after.samples;
-  // Unknown if samples have no residual with the coefficients of the file.
+  // Unknown if samples have no residual with the input model.
   result.rms_before = sums.before.samples == sums.after.samples ? sums.rms_of(sums.before.squares) : nan;
   result.rms = sums.rms_of(sums.after.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
@@ -408,10 +408,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
   if (gps) result.warnings.insert(result.warnings.begin(), gps->warnings.begin(), gps->warnings.end());
   if (constexpr double much = 1.02; by_gps_alone && result.rms > much * result.rms_before) {
-    result.warnings.push_back(fmt::format(
-        "the rms of the residual increases from {:.3f} to {:.3f} hPa, which gusts can cause; compare "
-        "the model with another reference before you use it",
-        result.rms_before, result.rms));
+    result.warnings.push_back(
+        fmt::format("compare the model with another reference before you use it: the rms increases from "
+                    "{:.3f} to {:.3f} hPa; gusts can cause this",
+                    result.rms_before, result.rms));
   }
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
@@ -461,7 +461,7 @@ RefitResult refit(const FlightSet& flights, const ModelDefinition& model, const 
     if (!has_both || !is_of_fit || is_for_others) throw;
     result = fit(flights, model, References(gps, in_order.end()), options);
     result.notes.insert(result.notes.begin(),
-                        fmt::format("fitted to {} alone, since the other references do not determine the "
+                        fmt::format("fitted to {} alone, because the other references do not determine the "
                                     "coefficients: {}",
                                     result.reference_text, error.what()));
   }

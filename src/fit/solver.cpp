@@ -139,13 +139,13 @@ class Solver {
       choose_times();
       linear_step({});
       measure();
-      settles();
+      refine();
       // The noise is that of residuals at the solution.
       constexpr int maximum = 5;
       for (int round = 0; round < maximum && flights_.has_moving_columns(); ++round) {
         const Eigen::VectorXd before = unknowns();
         flights_.prepare(solution_.values);
-        settles();
+        refine();
         if (has_converged(before)) break;
       }
     }
@@ -154,18 +154,18 @@ class Solver {
     // The weight of each reference is that of its residuals at the solution.
     for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
       const Eigen::VectorXd before = unknowns();
-      settles();
+      refine();
       if (has_converged(before)) break;
       measure();
     }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns();
-      const bool settled = settles();
+      const bool is_stable = refine();
       if (!flights_.uses_fixed_jacobian()) {
-        if (settled) break;
+        if (is_stable) break;
         continue;
       }
-      if (settled && has_converged(before)) break;
+      if (is_stable && has_converged(before)) break;
       flights_.prepare(solution_.values);
     }
     find_bounds();
@@ -176,8 +176,8 @@ class Solver {
   Eigen::VectorXd unknowns() const { return solution_.values(free_); }
   void set(const Eigen::VectorXd& values) { solution_.values(free_) = values; }
 
-  /// Start with the least squares for each time over which a need is estimated: the sum of squares may have
-  /// several minima, like a wave shifted by more than its length.
+  /// Chooses the time constants with the least sum of squares from their listed values: the sum may have
+  /// several minima, like that of a wave shifted by more than its length.
   void choose_times() {
     for (Eigen::Index k = 0; k < lower_.size(); ++k) {
       std::vector<double> times = task_.parameters[free_[static_cast<std::size_t>(k)]].tried;
@@ -270,7 +270,7 @@ class Solver {
   }
 
   /// Minimises the loss; true if the deviation that scales it is then unchanged.
-  bool settles() {
+  bool refine() {
     const ScaledLoss scaled(task_.options.loss, solution_.deviation);
     if (flights_.rows_are_linear())
       reweight(scaled);

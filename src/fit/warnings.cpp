@@ -23,18 +23,17 @@ constexpr double many_outliers = 0.05;  // fraction of all samples
 std::string why_worse(const RefitResult& result, double bulk_rms_before) {
   if (result.rms > larger * result.rms_before && result.bulk_rms > larger * bulk_rms_before) {
     return fmt::format(
-        "the rms of the fitted samples is larger with the fit, {:.3f} hPa, "
-        "than with the coefficients of the file, {:.3f} hPa",
-        result.rms, result.rms_before);
+        "the rms of the fitted samples increases from {:.3f} hPa with the input model to {:.3f} hPa with the "
+        "fit",
+        result.rms_before, result.rms);
   }
   const std::optional<HeldOutPart> held_out = worst_held_out(result.flights);
   if (held_out && held_out->is_off()) return held_out->text();
   for (const FlightFit& flight : result.flights) {
     if (flight.holdout && flight.after.rms > larger_elsewhere * flight.before.rms) {
       return fmt::format(
-          "held-out {}: the rms is larger with the fit, {:.3f} hPa, than with the coefficients of the file, "
-          "{:.3f} hPa",
-          flight.flight, flight.after.rms, flight.before.rms);
+          "held-out {}: the rms increases from {:.3f} hPa with the input model to {:.3f} hPa with the fit",
+          flight.flight, flight.before.rms, flight.after.rms);
     }
   }
   return "";
@@ -50,11 +49,11 @@ std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRu
   }
   if (longest.duration() >= max_chance) {
     warnings.push_back(fmt::format(
-        "{}: from {} to {} {} samples in a row are off by {:+.2f} hPa in the mean, each beyond {:.1f} "
-        "deviations of the noise, so they are not outliers: an effect is missing there, or a sensor "
-        "failed",
-        longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
-        longest.samples, longest.mean, tukey_width));
+        "look for a missing effect or a failed sensor: {}, {}-{} UTC, mean residual {:+.2f} hPa; {} "
+        "consecutive samples, each beyond {:.1f} standard deviations of the noise, are not treated as "
+        "outliers",
+        longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"), longest.mean,
+        longest.samples, tukey_width));
   }
   const double share = static_cast<double>(result.outliers) / static_cast<double>(result.samples);
   if (share > many_outliers) {
@@ -64,11 +63,10 @@ std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRu
                     100.0 * share));
   }
   if (result.rms > larger * result.least_squares_rms) {
-    warnings.push_back(
-        fmt::format("the rms residual is {:.3f} hPa with plain least squares of all samples and {:.3f} hPa "
-                    "with this fit: outliers are down-weighted, or a bound or a prior restricts a "
-                    "coefficient; --loss none weights all samples equally",
-                    result.least_squares_rms, result.rms));
+    warnings.push_back(fmt::format(
+        "compare with --loss none: rms {:.3f} hPa with this fit, {:.3f} hPa with plain least squares "
+        "of all samples; outliers are down-weighted, or a bound or a prior restricts a coefficient",
+        result.rms, result.least_squares_rms));
   }
   return warnings;
 }
@@ -83,8 +81,8 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   std::vector<std::string> notes;
   if (!has_converged) {
     notes.emplace_back(
-        "the staged fit did not converge: the stages keep changing each other's coefficients; fit the "
-        "coefficients together, without stages");
+        "fit the coefficients together, without --stage: the stages keep changing each other's coefficients "
+        "and did not converge");
   }
   // Uncertainty of a prior or of fixed parameters is not noise, so a jackknife cannot see it.
   const auto has_prior = [&](const FittedParameter& parameter) {
@@ -108,8 +106,8 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   }
   if (!by_one.empty()) {
     notes.push_back(
-        fmt::format("one {} alone determines {}: its jackknife error is infinite (inf), and no other part "
-                    "verifies its standard error; add a flight that determines it",
+        fmt::format("add a flight: one {} alone determines {}; the jackknife error is infinite (inf), and no "
+                    "other part verifies the standard error",
                     part, by_one));
   }
   if (!apart.empty()) {

@@ -8,10 +8,10 @@
 namespace pcor::internal {
 
 /// Reason not to use the fitted model, a sentence without full stop: its residuals exceed those with the
-/// coefficients of the file by more than 2 % on fitted samples (both rms and robust deviation, since a robust
+/// input model by more than 2 % on fitted samples (both rms and robust deviation, since a robust
 /// fit may increase outliers) or by more than 5 % on a held-out part, or the bias of a held-out part exceeds
 /// the expectation of the fit. Empty otherwise.
-/// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
+/// @param bulk_rms_before robust deviation with the input model, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
 /// Reasons not to trust a fit, one sentence each: residuals vary more than delta-p itself; outliers are

@@ -82,7 +82,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   const auto tell = [&](const char* what, const ModelDefinition& file) {
     const std::vector<std::string> added = added_to(file);
     if (options.progress)
-      options.progress(fmt::format("{} with {}", what, added.empty() ? "the given model" : added.back()));
+      options.progress(fmt::format("{} with {}", what, added.empty() ? "the input model" : added.back()));
   };
   const auto refit_options_for = [&](const TrialModel& trial) {
     RefitOptions refit_with = options.refit;

@@ -51,7 +51,7 @@ OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
     candidate.caution = "; significant structure remains, so this effect may not be the cause";
   } else if (!aliases.empty()) {
     candidate.caution =
-        fmt::format("; these flights cannot distinguish it from {}{}{}", fmt::join(aliases, ", "),
+        fmt::format("; these flights cannot distinguish the effect from {}{}{}", fmt::join(aliases, ", "),
                     finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
   }
   if (!diagnosis.rival.empty())
@@ -68,7 +68,7 @@ OfferedEffect candidate_of(const EmpiricalPredictor& variable, const std::string
                                      variable.description.empty() ? "" : ", " + variable.description);
   candidate.is_named = false;
   candidate.is_sure = true;  // only significant variables are traced
-  candidate.caution = "; no effect of the catalogue explains it, so the cause is still to be found";
+  candidate.caution = "; no effect of the catalogue explains this structure: its cause is unknown";
   return candidate;
 }
 
@@ -280,11 +280,10 @@ class ForwardSelection {
     const EffectInfo& surface = surface_info.front();
     const std::string id(surface.id);
     const TrialComparison& out = offer->out_of_fit;
-    const std::string figures =
-        fmt::format("rms {} with it and {} without it (chi2 changes by {:+.0f} +- {:.0f}) on {}",
-                    shown(out.rms_after), shown(out.rms_before), -out.gain, out.gain_error, offer->held_out);
+    const std::string figures = fmt::format("rms {} with it, {} without it on {}", shown(out.rms_after),
+                                            shown(out.rms_before), offer->held_out);
     if (!out.is_better() || !(out.rms_after <= unnamed_limit * out.rms_before)) {
-      result_.why_stopped += fmt::format("; {} was tried and dropped: {}", id, figures);
+      result_.why_stopped += fmt::format("; rejected: {}, {}", id, figures);
       return;
     }
     ImproveStep step;
@@ -294,16 +293,17 @@ class ForwardSelection {
     // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
       step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
-    step.learnt =
-        fmt::format("{}: {:.1f} degrees of freedom; {}; it describes the residual and identifies no cause",
-                    id, offer->degrees_of_freedom, figures);
+    step.learnt = fmt::format(
+        "{}: {:.1f} degrees of freedom; {}, decrease of chi2 {:.0f} +- {:.0f}; the surface describes "
+        "the residual and identifies no cause",
+        id, offer->degrees_of_freedom, figures, out.gain, out.gain_error);
     // The uncertainty of the choice among rivals stays part of the stated error.
     add_rival_error(offer->fit.model);
     result_.model = offer->fit.model;
     take(std::move(step), std::move(offer->fit), {}, before.alike);
   }
 
-  /// Compares the delivered model with the given one.
+  /// Compares the delivered model with the input model.
   void compare_with_the_given() {
     std::vector<TrialFlight> tried =
         loop_.try_models({given_, {result_.refitted}, {result_.model, delivered_alike_}, top()});
@@ -317,9 +317,9 @@ class ForwardSelection {
     // Without an applied rival the model explains less than with the best one, which shows whether the loop
     // did harm.
     const TrialComparison given = comparison_of(tried, 0, 3, loop_.has_holdout);
-    result_.worse = std::isnan(given.rms_before)  // the given model has no residual on these samples
+    result_.worse = std::isnan(given.rms_before)  // the input model has no residual on these samples
                         ? why_worse(comparison_of(tried, 1, 3, loop_.has_holdout), "refitted")
-                        : why_worse(given, "given");
+                        : why_worse(given, "input");
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
       std::vector<std::size_t> used = flight.fitted;
@@ -339,7 +339,7 @@ class ForwardSelection {
     const double growth = whole.rms_after / whole.rms_before;
     if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
     return fmt::format(
-        "{}: the rms of the best model is {:.4f} times the rms of the {} model (chi2 changes by {:+.0f} +- "
+        "{}: the rms of the best model is {:.4f} times the rms of the {} model (increase of chi2 {:.0f} +- "
         "{:.0f})",
         loop_.has_holdout ? "held-out samples" : "these flights", growth, before, -whole.gain,
         whole.gain_error);
@@ -417,23 +417,22 @@ class ForwardSelection {
         return stop(StopReason::reference_system,
                     fmt::format("{} {} of the reference system, so the model is unchanged (--trust-reference "
                                 "assumes that this system is right){}{}",
-                                finding.id(), finding.may_be_of_model() ? "may be an error" : "is",
+                                finding.id(), finding.may_be_of_model() ? "may be an error" : "is an error",
                                 finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));
       }
     }
     if (!now.findings.empty())
       return stop(StopReason::in_model, "the effects named by the diagnosis are already in the model");
     const Unexplained& left = now.unexplained;
-    std::string what = fmt::format("structure of {} is not explained by any effect of the catalogue{}{}",
-                                   shown(left.rms), left.regime.empty() ? "" : ", largest in ", left.regime);
-    what +=
-        left.variables.empty()
-            ? "; it is not correlated with any variable of the files"
-            : fmt::format("; it is correlated with {}, {}", left.variables.front().name,
-                          loop_.trace_variables
-                              ? "but no further formula of it can be added"
-                              : "and --trace-variables would add a formula of it, regardless of the cause");
-    stop(StopReason::unexplained, std::move(what));
+    stop(StopReason::unexplained,
+         fmt::format(
+             "{} rms is unexplained{}{}, {}", shown(left.rms), left.regime.empty() ? "" : ", largest in ",
+             left.regime,
+             left.variables.empty()
+                 ? "not correlated with any variable of the files"
+                 : fmt::format("correlated with {}; {}", left.variables.front().name,
+                               loop_.trace_variables ? "no further formula of this variable can be added"
+                                                     : "--trace-variables adds a formula of this variable")));
   }
 
   /// Adds the candidate and keeps it if it helps. @return the reason if it does not; empty if it is kept
@@ -447,18 +446,18 @@ class ForwardSelection {
       model = loop_.add(top(), candidate.choices.front());
       fit = loop_.refit(model);
     } catch (const Error& error) {
-      return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
+      return fmt::format("rejected: {}, not fitted: {}", id, error.what());
     }
     const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
     const TrialComparison fitted = comparison_of(tried, 0, 1, false);
     const TrialComparison held_out = comparison_of(tried, 0, 1, true);
     if (fitted.rms_after > fit_limit * fitted.rms_before && !fitted.is_better()) {
-      return fmt::format("{} was tried and dropped: rms of the fit {} with it, {} without it", id,
+      return fmt::format("rejected: {}, rms of the fit {} with it, {} without it", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
     measure(step, fit, model.alike);
     // Without held-out flights, the cross-validation parts of the diagnosis are used. If the model describes
-    // more samples than before (flaps out), both models are compared on these samples.
+    // more samples than before (flaps extended), both models are compared on these samples.
     const bool same_samples = fit.samples == result_.fit.samples;
     const bool in_turn = !loop_.has_holdout && same_samples;
     const TrialComparison& judged = loop_.has_holdout ? held_out : fitted;
@@ -469,22 +468,19 @@ class ForwardSelection {
     const std::string figures =
         fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));
     const std::string gain =
-        in_turn ? ""
-                : fmt::format(" (its squared residuals fall by {:.0f} +- {:.0f} in units of the noise)",
-                              judged.gain, judged.gain_error);
+        in_turn ? "" : fmt::format(" (decrease of chi2 {:.0f} +- {:.0f})", judged.gain, judged.gain_error);
     if (worse || !(better || (candidate.is_named && candidate.is_sure && fitted.is_better()))) {
-      return fmt::format("{} was tried and dropped: {}{}{}", id, figures, gain,
-                         worse ? "" : ", not more than expected by chance");
+      return fmt::format("rejected: {}, {}{}{}", id, figures, gain, worse ? "" : ", not significant");
     }
     if (!candidate.is_named && !(after <= unnamed_limit * before)) {
-      return fmt::format(
-          "{} was tried and dropped: {}; a term with an unknown cause must reduce it by {:.0f} %", id,
-          figures, 100.0 * (1.0 - unnamed_limit));
+      return fmt::format("rejected: {}, {}; a term with an unknown cause must reduce the rms by {:.0f} %", id,
+                         figures, 100.0 * (1.0 - unnamed_limit));
     }
-    step.learnt =
-        fmt::format("{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id),
-                    shown(before), shown(after),
-                    better ? "" : ", not significant: kept because of the fitted flights", candidate.caution);
+    step.learnt = fmt::format(
+        "{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id), shown(before),
+        shown(after),
+        better ? "" : ", not significant; kept because the residual of the fitted flights decreases",
+        candidate.caution);
     take(std::move(step), std::move(fit), std::move(candidate.choices), std::move(model.alike));
     return "";
   }

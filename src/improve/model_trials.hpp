@@ -47,7 +47,7 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
 /// Model that has the effects of all models, with the coefficients of the first that has them.
 ModelDefinition union_of(const std::vector<TrialModel>& models);
 
-/// The model `extended` with coefficients and errors of the given model. Other effects get neutral
+/// The model `extended` with coefficients and errors of the input model. Other effects get neutral
 /// coefficients, formulas keep theirs. By GPS alone the prior of a fit is about its start, which is then no
 /// earlier estimate.
 ModelDefinition with_start_of(const ModelDefinition& given, ModelDefinition extended);

@@ -98,7 +98,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     offer.out_of_fit =
         comparison_of(try_models(flights, {models[0], models[1]}, references, options), 0, 1, true);
   } else {
-    offer.held_out = "five consecutive blocks with outliers, each with coefficients of the other four";
+    offer.held_out = "five held-out blocks with outliers";
     offer.out_of_fit = out_of_blocks(flights, models, references, options);
   }
   return offer;

@@ -173,8 +173,8 @@ class Processing {
           find_frozen(flight_, input.variable, input.quantity, values, flying);
       if (frozen.empty()) continue;
       if (time.empty()) time = record_times(flight_);
-      summary_.notes.push_back(
-          warning_note(frozen_text(input.variable, input.quantity, values, time, frozen)));
+      frozen_texts_.push_back(frozen_text(input.variable, input.quantity, values, time, frozen));
+      summary_.notes.push_back(warning_note(frozen_texts_.back()));
       input.frozen.resize(values.size());
       frozen_.resize(values.size());
       for (const Segment& span : frozen) {
@@ -203,7 +203,7 @@ class Processing {
   }
 
   /// Marks records with extended flaps unless an effect describes them: laws are usually fitted with flaps
-  /// in.
+  /// retracted.
   void find_flaps() {
     if (changes_no_pressure(file_, options_)) return;
     std::optional<std::vector<bool>> extended;
@@ -217,24 +217,23 @@ class Processing {
         return;
       extended = flaps_extended(flight_, file_);
     } catch (const Error& error) {  // a variable that no result needs is damaged
-      note("flaps are unknown: {}", error.what());
+      note("records with extended flaps have no quality bit: {}", error.what());
       return;
     }
     if (!extended) {
       note(
-          "flaps are not recorded and the lift does not determine them: records with extended flaps have no "
-          "quality bit");
+          "records with extended flaps have no quality bit: flaps are not recorded and the lift does not "
+          "determine them");
     } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
       flaps_ = std::move(*extended);
       const std::string times = add_outside("flaps extended", flaps_);
       summary_.notes.push_back(warning_note(fmt::format(
-          "do not use {} of {}: flaps extended in {} of {} records{}, without an effect of the model; "
-          "PCORFLAG has the bit outside_domain, and no uncertainty is given",
-          options_.correct_with == CorrectWith::lams
-              ? to_string("PCOR") + ", and other results without the bit corrected_with_lams,"
-              : "results",
-          times, std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(),
-          variable.empty() ? " (by the lift)" : "")));
+          "do not use {}{} of {} records (bit outside_domain): flaps extended, not in the model; {}{}; these "
+          "records have no uncertainty",
+          options_.correct_with == CorrectWith::lams ? to_string("PCOR") + " or results by the model in "
+                                                     : "",
+          std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(), times,
+          variable.empty() ? ", inferred from the lift" : "")));
     }
   }
 
@@ -270,8 +269,11 @@ class Processing {
     if (summary_.corrected > 0 || did_not_fly_) {
       summary_.notes.push_back(warning_note(text));
     } else {
-      flight_.file().refuse(Error::Code::samples,
-                            ": {}; check the [variables] and [units] of the model with 'pcor inspect'", text);
+      flight_.file().refuse(
+          Error::Code::samples, ": {}; {}", text,
+          frozen_texts_.empty()
+              ? "check the [variables] and [units] of the model with 'pcor inspect'"
+              : fmt::format("{}; --keep-frozen uses these readings", fmt::join(frozen_texts_, "; ")));
     }
   }
 
@@ -333,8 +335,8 @@ class Processing {
       if (!reads || time == info.parameters[0].neutral) continue;
       const std::string_view unit = info_of(info.location).unit;
       note(
-          "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and remove an error "
-          "of {:.2g} {}",
+          "{} of {:g} s is not applied: it would add {:.2g} {} of noise and remove {:.2g} {} of error on "
+          "this flight",
           effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
           std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
       time = info.parameters[0].neutral;
@@ -389,25 +391,24 @@ class Processing {
     using Q = Quantity;
     if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
         !states({EffectLocation::static_defect}, {})) {
-      note("the uncertainties exclude that of delta-p, which the model does not state");
+      note(
+          "refit the model or set static_defect in [uncertainty]: the uncertainties exclude the error of "
+          "delta-p");
     }
     if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
         !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
                  EffectLocation::pitot},
                 {Q::dynamic_pressure})) {
       note(
-          "set static_pressure and dynamic_pressure in [uncertainty] of the model: without both, the "
-          "uncertainties exclude the pressure transducers");
+          "set static_pressure and dynamic_pressure in [uncertainty]: the uncertainties exclude the pressure "
+          "transducers");
     }
     for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
       if (uncertainty_.calibration.empty()) break;
       const std::vector<std::string>& known = file_.covariance.parameters;
       if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
-      note(
-          "set \"{}\" in [uncertainty] of the model: without it, the uncertainties assume 0 +- {:g}, the "
-          "usual "
-          "size",
-          doubt.name(), doubt.size);
+      note("set \"{}\" in [uncertainty] of the model: the uncertainties assume 0 +- {:g}, the usual size",
+           doubt.name(), doubt.size);
     }
     if (chain_->has_temperature() && uncertainty_.calibration.empty() &&
         !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
@@ -671,10 +672,11 @@ class Processing {
   std::optional<DelayLine> results_;
   std::optional<DelayLine> filtered_;      // later still; and the quality bits, one of which is the filter's
   double sample_step_ = 1.0;               // s
+  std::vector<std::string> frozen_texts_;  // one for each frozen sensor
   std::vector<bool> frozen_;               // records in which any sensor is frozen; empty: none
   std::vector<bool> flaps_;                // records outside the law by extended flaps; empty: none
   std::vector<bool> outside_;              // records in flight outside the domain of the law; empty: none
-  bool did_not_fly_ = false;               // by the dynamic pressure
+  bool did_not_fly_ = false;               // the dynamic pressure stays below that of flight
   std::size_t noted_ = 0;                  // samples of which results are available
   std::map<Quantity, std::string> names_;  // names of inputs and results in the output
   ProcessSummary summary_;

@@ -72,7 +72,8 @@ struct Spread {
 /// Differences from the original processing in flight, by the state of the flaps.
 struct FlapsDifferences {
   std::set<std::string> variables{};
-  std::array<std::pair<const char*, Spread>, 3> by_flaps{{{"in", {}}, {"out", {}}, {"unknown", {}}}};
+  std::array<std::pair<const char*, Spread>, 3> by_flaps{
+      {{"retracted", {}}, {"extended", {}}, {"unknown", {}}}};
 
   /// @param difference in flight, NaN elsewhere
   void add(const Series& difference, const std::optional<std::vector<bool>>& extended) {

@@ -60,17 +60,17 @@ std::vector<SignPair> pairs_of(const FlightSamples& samples) {
   const Series drift = sum(motion.ground_track, motion.heading, -1.0);
   return {{"the vertical speed", motion.vertical_speed, "the change of altitude", altitude, 5.0,
            R"(vertical_speed = "-1 m s-1" or altitude = "-1 m")"},
-          {"the fall of the static pressure", fall, "the change of altitude", altitude, 5.0,
+          {"the decrease of the static pressure", fall, "the change of altitude", altitude, 5.0,
            R"(altitude = "-1 m")"},
-          {"the roll", motion.roll, "the turning of the heading", heading, 2.0,
+          {"the roll", motion.roll, "the rate of the heading", heading, 2.0,
            R"(roll = "-1 degree" or heading = "-1 degree")"},
-          {"the turning of the ground track", rise(motion.ground_track, true), "the turning of the heading",
+          {"the rate of the ground track", rise(motion.ground_track, true), "the rate of the heading",
            heading, 2.0, R"(ground_track = "-1 degree" or heading = "-1 degree")"},
-          {"the angle of attack", rise(motion.attack), "the pitch above the path",
+          {"the angle of attack", rise(motion.attack), "the pitch minus the climb angle",
            rise(sum(motion.pitch, climb, -1.0)), 0.3, R"(attack = "-1 degree" or pitch = "-1 degree")"},
-          {"the pitch", rise(motion.pitch), "the angle of attack and of climb together",
+          {"the pitch", rise(motion.pitch), "the angle of attack plus the climb angle",
            rise(sum(motion.attack, climb, 1.0)), 0.3, R"(pitch = "-1 degree" or attack = "-1 degree")"},
-          {"the sideslip", rise(motion.sideslip), "the drift", rise(drift, true), 0.3,
+          {"the sideslip", rise(motion.sideslip), "the drift angle", rise(drift, true), 0.3,
            R"(sideslip = "-1 degree" or ground_track = "-1 degree")"}};
 }
 
@@ -96,9 +96,9 @@ Notes contradicting_signs(const FlightSamples& samples, double min_airspeed) {
     const double correlation = correlation_of(pair, samples, min_airspeed);
     if (!(correlation < -min_correlation)) continue;
     contradictions.push_back(warning_note(
-        fmt::format("{} and {} have opposite signs (correlation {:.2f}); invert the wrong one in the [units] "
-                    "of the model, {}",
-                    pair.first_name, pair.second_name, correlation, pair.turn)));
+        fmt::format("a sign is wrong: set {} in [units] of the model; {} and {} have opposite signs "
+                    "(correlation {:.2f})",
+                    pair.turn, pair.first_name, pair.second_name, correlation)));
   }
   return contradictions;
 }

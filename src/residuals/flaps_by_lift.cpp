@@ -15,14 +15,14 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double piece_time = 20.0;         // s
-constexpr double time_in = 3600.0;          // s, mean duration
-constexpr double time_out = 600.0;          // s, mean duration
-constexpr double min_deficit = 0.12;        // a C-130 of 2004 showed 0.37 and more
-constexpr double max_deficit = 0.8;         // and at most 0.68 before it landed
-constexpr double anywhere_share = 0.001;    // fraction of the pieces with flaps in
-constexpr double anywhere_deficit = 0.3;    // their standard deviation
-constexpr double slope_error = 0.05;        // relative error of the lift away from the fitted range
+constexpr double piece_time = 20.0;      // s
+constexpr double time_in = 3600.0;       // s, mean duration
+constexpr double time_out = 600.0;       // s, mean duration
+constexpr double min_deficit = 0.12;     // a C-130 of 2004 showed 0.37 and more
+constexpr double max_deficit = 0.8;      // and at most 0.68 before it landed
+constexpr double outlier_share = 0.001;  // fraction of the pieces with flaps retracted whose deficit is wrong
+constexpr double outlier_deficit = 0.3;  // their standard deviation
+constexpr double slope_error = 0.05;     // relative error of the lift away from the fitted range
 constexpr double usual_compression = -0.2;  // coefficient of M^2: half of the Prandtl-Glauert rule, as for
                                             // swept wings
 constexpr double compression_spread = 0.3;  // standard deviation
@@ -32,7 +32,7 @@ constexpr double likely = 0.9;
 constexpr double robust_limit = 4.0;         // deviations
 constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
 constexpr std::size_t min_fast = 15;         // pieces
-constexpr int max_rounds = 10;
+constexpr int rounds = 10;
 
 /// Relative deficit of the angle compared with the lift, and its standard error.
 struct Deficit {
@@ -51,7 +51,7 @@ struct Piece {
   double airspeed = 0.0;  ///< indicated airspeed from the mean dynamic pressure, m/s
   double weight = 0.0;    ///< its weight in the fit of the clean wing
   Deficit deficit{};
-  double out = 0.0;  ///< probability of flaps out
+  double out = 0.0;  ///< probability of flaps extended
 };
 
 double load_factor_at(const FlightSamples& samples, std::size_t i) {
@@ -75,6 +75,7 @@ std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<dou
   for (std::size_t first = 0, end = 0; first < samples.time.size(); first = end) {
     Piece piece{first};
     double count = 0.0;
+    double mean_q = 0.0;  // hPa
     while (end < samples.time.size() && samples.time[end] - samples.time[first] < piece_time) {
       const std::size_t i = end++;
       if (!(samples.motion.airspeed[i] >= min_airspeed) || !(q[i] > 0.0)) continue;
@@ -85,14 +86,13 @@ std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<dou
       piece.lift += lift;
       piece.mach += mach;
       piece.angle += angle[i];
-      piece.airspeed += q[i];
+      mean_q += q[i];
       count += 1.0;
     }
     piece.end = end;
     if (2.0 * count * samples.step < piece_time) continue;
-    for (double* const sum : {&piece.time, &piece.lift, &piece.mach, &piece.angle, &piece.airspeed})
-      *sum /= count;
-    piece.airspeed = std::sqrt(2.0 * 100.0 * piece.airspeed / sea_level_density);
+    for (double* const sum : {&piece.time, &piece.lift, &piece.mach, &piece.angle, &mean_q}) *sum /= count;
+    piece.airspeed = std::sqrt(2.0 * 100.0 * mean_q / sea_level_density);
     pieces.push_back(piece);
   }
   return pieces;
@@ -187,17 +187,17 @@ double normal_density(double x, double deviation) {
 
 double normal_probability(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-/// Log likelihood ratio of flaps out against flaps in, for a piece.
+/// Log likelihood ratio of flaps extended against flaps retracted, for a piece.
 double evidence_of(const Piece& piece, double flap_speed) {
   const auto [value, error] = piece.deficit;
-  const double in = (1.0 - anywhere_share) * normal_density(value, error) +
-                    anywhere_share * normal_density(value, anywhere_deficit);
+  const double in = (1.0 - outlier_share) * normal_density(value, error) +
+                    outlier_share * normal_density(value, outlier_deficit);
   const double out = (normal_probability((value - min_deficit) / error) -
                       normal_probability((value - max_deficit) / error)) /
                      (max_deficit - min_deficit);
-  const double lift = std::clamp(std::log(out) - std::log(in), -most_evidence, most_evidence);
+  const double by_lift = std::clamp(std::log(out) - std::log(in), -most_evidence, most_evidence);
   const double over = std::max(piece.airspeed / flap_speed - 1.0, 0.0) / over_speed;
-  return (std::isnan(lift) ? 0.0 : lift) - 0.5 * over * over;
+  return (std::isnan(by_lift) ? 0.0 : by_lift) - 0.5 * over * over;
 }
 
 /// Finds the probability of the state out at each piece: forward and backward over all of them.
@@ -244,7 +244,7 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
     ++fast;
   }
   if (fast < min_fast) return {};
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const LiftLaw law(pieces);
     if (!law.rises()) return {};
     for (Piece& piece : pieces) piece.deficit = law.deficit(piece);

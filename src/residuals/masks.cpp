@@ -28,7 +28,7 @@ const std::array<MaskInfo, mask_count> mask_info{{
     {"laser_unlocked", "laser airspeed far from the prediction by the pressures"},
     {"burst", "burst of a few seconds, in which a pressure and the residual jump"},
     {"impossible", "undefined delta-p for these values and coefficients"},
-    {"flaps", "flaps out (--max-flaps)"},
+    {"flaps", "flaps extended (--max-flaps)"},
 }};
 
 std::string mask_text(const std::array<std::size_t, mask_count>& counts) {

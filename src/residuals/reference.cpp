@@ -29,12 +29,8 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
   if (model.variables.count(Quantity::lams_airspeed) == 0) {
     throw Error(
         Error::Code::model,
-        fmt::format("model '{}' has no lams_airspeed, which the reference lams (the default) reads; name the "
-                    "variable of "
-                    "the laser in [variables], for example lams_airspeed = \"VLAMS\", or give --reference "
-                    "static:OTHER.toml, total:PS+QC, pressure:PS, height or wind ('pcor inspect' lists what "
-                    "the flight "
-                    "allows)",
+        fmt::format("model '{}' names no laser (lams_airspeed); give another --reference: static:OTHER.toml, "
+                    "pressure:PS, wind or height ('pcor inspect' lists them)",
                     model.model.name));
   }
   return lams_reference();

@@ -132,11 +132,12 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
   for (std::size_t i = 0; i < lift->out.size(); ++i)
     slow += lift->out[i] && samples.motion.airspeed[i] < min_airspeed ? 1 : 0;
   std::string note = fmt::format(
-      "flaps out by the lift; --max-flaps 100 includes them: {}, {} samples{}; angle of attack {:.0f} % "
-      "below the clean-wing value, scatter {:.1f} %; flaps not recorded",
-      times_of(marked_segments(lift->out), samples.time), out,
-      slow == 0 ? "" : fmt::format(", {} below {:g} m/s", slow, min_airspeed), 100.0 * lift->deficit,
-      100.0 * lift->deviation);
+      "{} samples are excluded by default (--max-flaps 100 includes them): flaps extended, inferred from the "
+      "lift; {}{}; flaps are not recorded; the angle of attack is {:.0f} % below its value with flaps "
+      "retracted, scatter {:.1f} %",
+      out, times_of(marked_segments(lift->out), samples.time),
+      slow == 0 ? "" : fmt::format("; {} of them are below {:g} m/s", slow, min_airspeed),
+      100.0 * lift->deficit, 100.0 * lift->deviation);
   const bool is_considerable = static_cast<double>(out) / static_cast<double>(lift->out.size()) > 0.1;
   samples.notes.push_back(is_considerable ? warning_note(note) : std::move(note));
 }
@@ -221,9 +222,9 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   int fastest = 1;
   for (const ModelInput& input : inputs) fastest = std::max(fastest, flight.variable(input.variable).rate);
   if (fastest > 1) {
-    notes.push_back(
-        fmt::format("recorded with up to {:g} samples per second; the comparison uses means over {:g} s",
-                    fastest / step, step));
+    notes.push_back(fmt::format(
+        "means over {:g} s are compared; the flight is recorded with up to {:g} samples per second", step,
+        fastest / step));
   }
   const auto rate = [&](FastSeries& series) {
     series.min_period = signal_band_of(series, time, step).min_period;
@@ -312,10 +313,10 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
     mark_frozen(flight, samples, part, options.min_airspeed);
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {
-    samples.notes.push_back(
-        fmt::format("unknown aircraft {}: regimes are found by the criteria of the C-130, whose speed runs "
-                    "are slower than those of a jet; --intervals adds or removes regimes",
-                    samples.aircraft.empty() ? "(no name)" : "'" + samples.aircraft + "'"));
+    samples.notes.push_back(fmt::format(
+        "check the regimes (--intervals corrects them): unknown aircraft {}, so the criteria of the "
+        "C-130 are used; speed runs of a jet are faster",
+        samples.aircraft.empty() ? "(no name)" : "'" + samples.aircraft + "'"));
   }
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {

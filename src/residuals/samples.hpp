@@ -48,18 +48,18 @@ std::string inputs_of(const ModelDefinition& model, bool with_laser);
 /// @throws Error as does `inputs_of`
 std::uint64_t samples_key(const ModelDefinition& model, const Reference& reference, const MaskOptions& mask);
 
-/// Samples with flaps out, inferred from the lift of a flight that does not record the flaps.
+/// Samples with flaps extended, inferred from the lift of a flight that does not record the flaps.
 struct FlapsByLift {
   std::vector<bool> out{};  ///< state of every sample
-  double deficit = 0.0;     ///< median relative deficit of the angle of attack with flaps out
-  double deviation = 0.0;   ///< standard deviation of the deficit with flaps in
+  double deficit = 0.0;     ///< median relative deficit of the angle of attack with flaps extended
+  double deviation = 0.0;   ///< standard deviation of the deficit with flaps retracted
 };
 
 /// The angle of attack above the zero-lift angle is proportional to load factor over dynamic pressure, n/q;
-/// with flaps out it is smaller. The relation of the clean wing is fitted to the flight, with a weight that
-/// decreases with time, and with the compressibility of the flight: first to samples above the maximum speed
-/// with flaps, then to all samples that are likely clean. Its error consists of the error of the fit, with
-/// correlated residuals, and 5 % of the lever in n/q.
+/// with flaps extended it is smaller. The relation of the clean wing is fitted to the flight, with a weight
+/// that decreases with time, and with the compressibility of the flight: first to samples above the maximum
+/// speed with flaps, then to all samples that are likely clean. Its error consists of the error of the fit,
+/// with correlated residuals, and 5 % of the lever in n/q.
 ///
 /// A two-state model covers pieces of 20 s: in, for an hour on average, and out, for ten minutes. In the
 /// state out the angle is too small by 12 to 80 %, uniformly distributed; in the state in it follows the

@@ -79,12 +79,12 @@ double Statistics::scatter() const { return std::sqrt(std::max(rms * rms - mean 
 
 std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what) {
   if (flaps_out.samples == 0) return "";
-  return fmt::format("not in {}: {} samples with flaps out, residual {:+.2f}{}, scatter {:.2f} hPa", of_what,
-                     flaps_out.samples, flaps_out.bias,
-                     std::isnan(flaps_out.bias_error)
-                         ? " hPa (error unknown)"
-                         : fmt::format(" +- {:.2f} hPa (standard error)", flaps_out.bias_error),
-                     flaps_out.scatter());
+  return fmt::format(
+      "excluded from {}: {} samples with flaps extended, residual {:+.2f}{}, scatter {:.2f} hPa", of_what,
+      flaps_out.samples, flaps_out.bias,
+      std::isnan(flaps_out.bias_error) ? " hPa (error unknown)"
+                                       : fmt::format(" +- {:.2f} hPa (standard error)", flaps_out.bias_error),
+      flaps_out.scatter());
 }
 
 bool HeldOutPart::is_off() const {
@@ -98,9 +98,9 @@ bool HeldOutPart::is_off() const {
 
 std::string HeldOutPart::text() const {
   return fmt::format(
-      "held-out {}: mean residual {:+.3f} hPa (rms {:.3f} hPa), expected 0 +- {:.3f} hPa: the model lacks a "
-      "change with time, between flights, or in a regime outside the fit",
-      flight, statistics.bias, statistics.rms, expected);
+      "held-out {}: mean residual {:+.3f} hPa, expected 0 +- {:.3f} hPa (rms {:.3f} hPa); the model lacks a "
+      "change with time, between flights, or in a regime that was not fitted",
+      flight, statistics.bias, expected, statistics.rms);
 }
 
 }  // namespace pcor

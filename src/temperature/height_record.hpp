@@ -77,8 +77,8 @@ struct HeightRecord {
   std::size_t missing_heights = 0;  ///< samples in the air without GPS height
   std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
   WayKnown way = WayKnown::over_ground;
-  double slope_left = 1.0;       ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
-  bool returns = false;          ///< ends within 50 km of its start
+  double slope_left = 1.0;  ///< fraction of the usual slope of isobars that `excess` still contains, 0 to 1
+  bool returns = false;     ///< ends within 50 km of its start
   double min_temperature = 0.0;  ///< degC
   double max_temperature = 0.0;  ///< degC
   /// Rms of the static pressure by one unit of each of its errors, hPa; zero for the coefficients.
@@ -96,15 +96,15 @@ struct HeightRecord {
 
 struct HeightRecordOptions {
   double min_climb_rate = 0.0;  ///< m/s; slower blocks are excluded, and each climb is a segment
-  /// The temperature is that of a thermometer less the heating by the flow, for which it has to know the Mach
-  /// number: where delta-p is too large by a part x of the pressure, that is x R/cp of the temperature too
-  /// much, (p/(p + q))^(R/cp) being their ratio where all of the heating is recovered.
+  /// The temperature is computed from a recovery temperature and the Mach number. If delta-p is too large by
+  /// the fraction x of the pressure, the temperature is too high by the fraction x R/cp: the ratio of the two
+  /// temperatures is (p/(p + q))^(R/cp) for complete recovery.
   bool recovers = false;
   bool has_radome = true;  ///< angle-of-attack errors in units of the radome ratio; otherwise of degrees
 };
 
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),
-/// after the take-off, with flaps in. Restarts after every gap and every step of the GPS height.
+/// after the take-off, with flaps retracted. Restarts after every gap and every step of the GPS height.
 ///
 /// @param steps if not empty, -(R_a/g0) ln(p_i/p_(i-1)) of every record from `pcor process --hydrostatic`,
 /// m/K; otherwise computed from pressure and humidity

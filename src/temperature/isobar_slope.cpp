@@ -94,24 +94,22 @@ Eigen::Vector2d estimate_isobar_slope(const HeightRecord& record, IsobarSlope op
   return information.ldlt().solve(right);
 }
 
-void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
+void subtract_isobar_slope(HeightRecord& record, IsobarSlope option) {
   if (option == IsobarSlope::none) return;
   if (record.way == WayKnown::through_air) {
     record.notes.emplace_back(
-        "ground speed and track are not recorded (GGSPD and GGTRK, or GGVEW and GGVNS): airspeed and heading "
-        "are used instead");
+        "airspeed and heading are used: ground speed and track are not recorded (GGSPD and GGTRK, or GGVEW "
+        "and GGVNS)");
   }
   if (record.way == WayKnown::length) {
     record.notes.emplace_back(
-        "neither ground speed and track nor heading is recorded (GGSPD and GGTRK, or GGVEW and GGVNS, or "
-        "THDG): the slope of isobars is fitted as if the track were straight, so errors in turns are not "
-        "included");
+        "errors in turns are not included: without ground velocity and heading, isobars are fitted along a "
+        "straight track; not recorded: GGSPD and GGTRK, or GGVEW and GGVNS, or THDG");
   }
   if (option == IsobarSlope::fitted) return;
   if (record.way == WayKnown::length) {
     record.notes.emplace_back(
-        "no slope of isobars can be estimated, because directions are unknown: it is fitted by the "
-        "likelihood, as with --slope fitted");
+        "the slope of isobars is fitted by the likelihood, as with --slope fitted: directions are unknown");
     return;
   }
   record.slope_left = slope_left_by_estimates;

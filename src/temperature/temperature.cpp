@@ -80,12 +80,12 @@ class TemperatureCalibration {
       heights.flight = flights_.name(number);
       heights.excluded = part.excluded;
       if (!part.record) continue;
-      if (dry_.empty()) dry_ = part.dry;
+      if (dry_air_objection_.empty()) dry_air_objection_ = part.dry;
       levelled_.push_back(*part.record);
       // Least squares and figures do not fit a slope.
       const bool fitted = options_.slope == IsobarSlope::fitted;
-      take_off_isobar_slope(levelled_.back(), fitted ? IsobarSlope::whole_flight : options_.slope);
-      take_off_isobar_slope(*part.record, options_.slope);
+      subtract_isobar_slope(levelled_.back(), fitted ? IsobarSlope::whole_flight : options_.slope);
+      subtract_isobar_slope(*part.record, options_.slope);
       records_.push_back(std::move(*part.record));
     }
     if (!records_.empty()) return;
@@ -396,7 +396,7 @@ class TemperatureCalibration {
 
   /// Reason why the correction does not improve the heights; empty if it improves them.
   std::string reason_against() const {
-    if (!dry_.empty()) return dry_;
+    if (!dry_air_objection_.empty()) return dry_air_objection_;
     const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
     if (gain < worthwhile_gain) {
       return fmt::format("the correction is not significant: -2 ln L decreases by {:.1f} (threshold {:g})",
@@ -410,9 +410,9 @@ class TemperatureCalibration {
         });
     if (std::abs(at.correction) < significant * at.standard_error) {
       return fmt::format(
-          "the correction is not significant: at {:.0f} C, its best determined temperature, the correction "
-          "is {} K (threshold {:g} standard errors, p = 0.01)",
-          at.temperature, with_error(at.correction, at.standard_error), significant);
+          "the correction is not significant: {} K at {:.0f} C, the best determined temperature; threshold "
+          "{:g} standard errors (p = 0.01)",
+          with_error(at.correction, at.standard_error), at.temperature, significant);
     }
     const double before = rms_without_other_errors({});
     const double after = rms_without_other_errors(result_.likelihood.coefficients);
@@ -431,9 +431,9 @@ class TemperatureCalibration {
       for (const PartCorrection& part : *parts) {
         if (!is_made_worse(part)) continue;
         return fmt::format(
-            "separate fit {}, common correction {:+.2f} K: the correction degrades it by more than three "
-            "standard errors",
-            part_text(part), part.common);
+            "the correction degrades {} by more than three standard errors; separate fit {} K, common "
+            "correction {:+.2f} K",
+            part.part, with_error(part.correction, part.standard_error), part.common);
       }
     }
     return "";
@@ -445,11 +445,12 @@ class TemperatureCalibration {
     if (!result_.worse.empty()) result_.notes.push_back(result_.worse);
     if (!options_.degree && records_.size() < min_for_choice) {
       result_.notes_on_degree.push_back(fmt::format(
-          "set the degree with --degree if you know it: {} flight{} cannot be cross-validated, so "
-          "the fit of these flights chooses it (decrease of -2 ln L above {:.0f} per coefficient)",
+          "set the degree with --degree if you know it: {} flight{} cannot be cross-validated; the degree "
+          "was chosen by the likelihood (decrease of -2 ln L above {:.0f} per coefficient)",
           records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
     }
-    const bool attack_is_unknown = prior_.sizes[with_attack] > 0.0 && result_.law_errors.size() < 2;
+    const bool attack_is_unknown = prior_.sizes[with_attack] > 0.0 &&
+                                   !(most_likely_.equations.information(with_attack, with_attack) > 0.0);
     for (const Notes& more :
          {result_.notes_on_degree, noise_notes(result_), method_notes(options_, attack_is_unknown),
           record_notes(records_, options_.slope)})
@@ -480,8 +481,8 @@ class TemperatureCalibration {
   const ModelDefinition& model_;
   const TemperatureOptions& options_;
   Workers workers_;
-  std::string dry_;         // objection to dry air for a flight in use
-  double law_error_ = 0.0;  // standard deviation of delta-p, hPa, before the heights are seen
+  std::string dry_air_objection_;  // objection to dry air for a flight in use
+  double law_error_ = 0.0;         // standard deviation of delta-p, hPa, before the heights are seen
   HeightPrior prior_;
   std::vector<HeightRecord> records_;
   std::vector<HeightRecord> levelled_;  // heights after subtraction of an estimated isobar slope

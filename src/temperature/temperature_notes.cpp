@@ -24,9 +24,9 @@ bool is_seen(const LawError& error) {
 
 /// Comparison of an error that heights detect with its stated size.
 const char* size_text(const LawError& error) {
-  if (is_beyond_prior(error)) return "but an undetected error of the same size may remain: ";
-  return std::abs(error.change) < error.size ? "and is within the stated error of the model; "
-                                             : "and is within three times the stated error of the model; ";
+  if (is_beyond_prior(error)) return "but an undetected error of the same size may remain";
+  return std::abs(error.change) < error.size ? "and is within the stated error of the model"
+                                             : "and is within three times the stated error of the model";
 }
 
 }  // namespace
@@ -35,22 +35,18 @@ bool is_beyond_prior(const LawError& error) {
   return is_seen(error) && std::abs(error.change) > significant_ratio * error.size;
 }
 
-std::string part_text(const PartCorrection& part) {
-  return fmt::format("{}: {} K", part.part, with_error(part.correction, part.standard_error));
-}
-
 std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
   std::vector<std::string> warnings;
   const auto differ = [&warnings](const std::vector<PartCorrection>& parts, double spread, const char* who) {
     if (!(spread > 0.0)) return;
     std::vector<std::string> texts;
-    for (const PartCorrection& part : parts) texts.push_back(part_text(part));
+    for (const PartCorrection& part : parts)
+      texts.push_back(fmt::format("{} {} K", part.part, with_error(part.correction, part.standard_error)));
     const Disagreement apart = disagreement_of(parts);
-    warnings.push_back(
-        fmt::format("{} differ: {}; chi-squared {:.1f} with {} degrees of freedom, p = "
-                    "{:.1g} (threshold 0.01); the standard deviation between them, {:.2g} "
-                    "K, is included in the errors",
-                    who, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
+    warnings.push_back(fmt::format(
+        "{} differ by {:.2g} K, p = {:.1g} (threshold 0.01); this standard deviation is included in "
+        "the errors: {}; chi-squared {:.1f} with {} degrees of freedom",
+        who, spread, apart.chance, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1));
   };
   differ(result.parts_by_flight, result.spread_of_flights, "the thermometers of the flights");
   differ(result.parts_by_climb, result.spread_of_climbs, "climbs and descents");
@@ -59,16 +55,21 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     const bool is_in_model = has_effect(result.model, error.effect);
     const std::string by = with_error(error.change, error.standard_error);
     warnings.push_back(fmt::format(
-        "heights indicate an error of the static-pressure model: {}, a range of {:.2f} hPa over the flights; "
-        "it was removed before fitting the thermometer, {}{}refit the model first",
-        is_in_model ? fmt::format("{} of {} is too small by {}", error.parameter, error.effect, by)
-                    : fmt::format("delta-p lacks a term like {}, {} = {}", error.effect, error.parameter, by),
-        error.range, size_text(error), is_in_model ? "" : fmt::format("add {} and ", error.effect)));
+        "{}; this error was removed before fitting the thermometer, {}",
+        is_in_model
+            ? fmt::format(
+                  "refit {} first: by GPS heights {} is too small by {}, which changes delta-p by {:.2f} hPa",
+                  error.effect, error.parameter, by, error.range)
+            : fmt::format(
+                  "add {0} (pcor add), then refit: by GPS heights delta-p lacks {1:.2f} hPa that varies "
+                  "like {0}; {2} = {3}",
+                  error.effect, error.range, error.parameter, by),
+        size_text(error)));
   }
   if (std::abs(result.humidity_change) > significant_ratio * result.humidity_error) {
     warnings.push_back(
-        fmt::format("heights indicate an error of the humidity: the vapour pressure is too small by {}; "
-                    "compare it with another hygrometer",
+        fmt::format("compare the humidity with another hygrometer: by GPS heights the vapour pressure is too "
+                    "small by {}",
                     with_error(result.humidity_change, result.humidity_error)));
   }
   return warnings;
@@ -78,16 +79,16 @@ Notes noise_notes(const TemperatureResult& result) {
   Notes notes;
   const double size = std::max(result.gps_noise, result.gps_wander);
   if (size > much_noise || result.drift > much_drift) {
-    notes.push_back(
-        fmt::format("the fitted noise is large (GPS height {:.1f} m, drift of the integral {:.1f} m per "
-                    "minute); possible causes are a lag of the static line or the thermometer, or a "
-                    "pressure error in climbs: the layers of pcor check show a lag of the pressure",
-                    size, result.drift));
+    notes.push_back(fmt::format(
+        "the fitted noise is large (GPS height {:.1f} m, drift of the integral {:.1f} m per minute): "
+        "run pcor check; its layers show a lag of the pressure; other causes are a lag of the "
+        "thermometer and a pressure error in climbs",
+        size, result.drift));
   }
   if (std::abs(result.innovation_correlation) > 0.1) {
     notes.push_back(
-        fmt::format("the noise model is not exact: innovations have a correlation of {:+.2f}, so errors "
-                    "may be wrong by 10 to 30 %",
+        fmt::format("errors may be wrong by 10 to 30 %: the noise model is not exact (correlation of the "
+                    "filter innovations {:+.2f})",
                     result.innovation_correlation));
   }
   return notes;
@@ -97,14 +98,14 @@ Notes method_notes(const TemperatureOptions& options, bool attack_is_unknown) {
   Notes notes;
   if (attack_is_unknown) {
     notes.emplace_back(
-        "the angle of attack is unknown: a pressure error proportional to it, which changes in a climb, is "
-        "not corrected and may resemble a thermometer error");
+        "a pressure error that varies with the angle of attack may resemble a thermometer error: the angle "
+        "is unknown");
   }
   if (options.slope == IsobarSlope::none ||
       (options.slope == IsobarSlope::fitted && options.slope_size == 0.0)) {
     notes.emplace_back(
-        "isobars are assumed to be level: a slope of 10 m in 100 km in a climb of 5 m/s is equivalent to 1 K "
-        "(--slope fitted)");
+        "isobars are assumed to be level (--slope fitted estimates their slope); a slope of 10 m in 100 km "
+        "in a climb of 5 m/s is equivalent to 1 K");
   }
   return notes;
 }

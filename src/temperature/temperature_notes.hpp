@@ -19,9 +19,6 @@ inline constexpr double usual_zero = effects::PsfdBias::info().parameters[0].typ
 /// Whether heights detect an error of the static-pressure model that is larger than its prior allows.
 bool is_beyond_prior(const LawError& error);
 
-/// "rf01: 0.52 +- 0.11 K".
-std::string part_text(const PartCorrection& part);
-
 /// Parts that differ, and errors of the pressure and the humidity that heights detect.
 std::vector<std::string> temperature_warnings(const TemperatureResult& result);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the tool writes, read by the programs that scientists use: ncdump, NCO, xarray and the CF checker.
+"""Output files of the tool, read by the programs that scientists use: ncdump, NCO, xarray and the CF checker.
 
     clients_test.py TOOL SOURCE_DIRECTORY [COMPLIANCE_CHECKER]
 
@@ -37,7 +37,7 @@ def old_flight(path):
 
 
 def high_rate_flight(path, old):
-    """The same samples at 25 in a record, in the way of newer files, from a minute before midnight on."""
+    """The same flight at 25 Hz as a netCDF-4 file, from one minute before midnight."""
     with netCDF4.Dataset(old) as source, netCDF4.Dataset(path, "w") as flight:
         flight.createDimension("Time", None)
         flight.createDimension(f"sps{RATE}", RATE)

@@ -1,4 +1,4 @@
-// Effects that are tested on the samples with flaps out.
+// Effects that are tested on the samples with flaps extended.
 #include "diagnose/flaps.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 namespace pcor::internal {
 namespace {
 
-/// Candidates with one column each, on a flight of 100 samples with flaps out.
+/// Candidates with one column each, on a flight of 100 samples with flaps extended.
 std::vector<std::string> tested_of(const std::vector<std::string>& effects) {
   constexpr std::size_t samples = 100;
   CandidateSet set;

@@ -219,7 +219,7 @@ TEST_F(Improve, RefusedFindingIsFollowedByTheOthers) {
   EXPECT_THAT(added(improvement), ElementsAre("", "static-mach"));
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
   ASSERT_EQ(improvement.fit.notes.size(), 1U);
-  EXPECT_THAT(improvement.fit.notes[0].text, HasSubstr("static-lag was tried and dropped"));
+  EXPECT_THAT(improvement.fit.notes[0].text, HasSubstr("rejected: static-lag"));
 }
 
 TEST_F(Improve, RefusedFindingThatIsAddedLaterHasNoNote) {
@@ -405,7 +405,7 @@ TEST_F(Improve, AddsAFormulaOfATracedVariable) {
   EXPECT_THAT(effect.parameters, ElementsAre(-0.03));
   EXPECT_THAT(effect.source, HasSubstr("one.nc"));
   EXPECT_EQ(write_model(parse_model(write_model(improvement.model), "it")), write_model(improvement.model));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("still to be found"));
+  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("cause is unknown"));
 }
 
 TEST_F(Improve, ATracedVariableMustReduceTheResidual) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tool on several processes of MPI says and writes what it does alone, and ends wherever one of them fails.
+"""With several MPI processes the output and the files of the tool are unchanged, and a failure of one process ends all.
 
     processes_test.py TOOL SOURCE_DIRECTORY TOOL_WITH_MPI LAUNCHER
 """

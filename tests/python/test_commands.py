@@ -72,7 +72,7 @@ def test_text_equals_that_of_the_tool(in_folder):
 
 
 def test_functions_have_the_options_of_the_tool():
-    # The completion lists the same options from another source than the help; options with a value have a case of their own.
+    # The completion lists the same options from another source than the help; options with a value have a separate case.
     script = run_tool("completion", "bash").stdout
     options = dict(re.findall(r"'(\w+) '\*' -'\*\) words='([^']*)'", script))
     with_value = set(re.findall(r"'(\w+) --(\S+) '\*", script))

@@ -57,7 +57,7 @@ TEST(IsobarSlope, LevelLegsEstimateTheSlope) {
 TEST(IsobarSlope, SubtractedSlopeLeavesNoResidual) {
   HeightRecord record = record_of(sloping());
   const double before = range_of_excess(record);
-  take_off_isobar_slope(record, IsobarSlope::whole_flight);
+  subtract_isobar_slope(record, IsobarSlope::whole_flight);
   EXPECT_LT(range_of_excess(record), 0.15 * before);
 }
 
@@ -65,7 +65,7 @@ TEST(IsobarSlope, ModesNoneAndFittedSubtractNoSlope) {
   for (const IsobarSlope option : {IsobarSlope::none, IsobarSlope::fitted}) {
     HeightRecord record = record_of(sloping());
     const double before = range_of_excess(record);
-    take_off_isobar_slope(record, option);
+    subtract_isobar_slope(record, option);
     EXPECT_EQ(range_of_excess(record), before);
   }
 }
@@ -74,12 +74,12 @@ TEST(IsobarSlope, EveryEstimateLeavesARemainder) {
   for (const IsobarSlope option :
        {IsobarSlope::level_legs, IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
     HeightRecord record = record_of(sloping());
-    take_off_isobar_slope(record, option);
+    subtract_isobar_slope(record, option);
     EXPECT_GT(record.slope_left, 0.0);
     EXPECT_LT(record.slope_left, 1.0);
   }
   HeightRecord record = record_of(sloping());
-  take_off_isobar_slope(record, IsobarSlope::fitted);
+  subtract_isobar_slope(record, IsobarSlope::fitted);
   EXPECT_EQ(record.slope_left, 1.0);
 }
 
@@ -92,7 +92,7 @@ TEST(IsobarSlope, UndeterminedSlopeIsLeftToTheLikelihood) {
   air.samples = samples;
   HeightRecord no_directions = height_record(air, {}, {});
   const double before = range_of_excess(no_directions);
-  take_off_isobar_slope(no_directions, IsobarSlope::whole_flight);
+  subtract_isobar_slope(no_directions, IsobarSlope::whole_flight);
   EXPECT_EQ(no_directions.slope_left, 1.0);
   EXPECT_EQ(range_of_excess(no_directions), before);
   EXPECT_THAT(no_directions.notes,

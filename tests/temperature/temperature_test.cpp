@@ -633,7 +633,7 @@ TEST_F(Temperature, ReportHasOnlyTheUsedFlights) {
   const auto* coefficients = item<ReportTable>(report, "Coefficients");
   ASSERT_NE(coefficients, nullptr);
   EXPECT_THAT(coefficients->rows, SizeIs(2));
-  const auto* degrees = item<ReportTable>(report, "Which degree");
+  const auto* degrees = item<ReportTable>(report, "Degree of the correction");
   ASSERT_NE(degrees, nullptr);
   EXPECT_THAT(degrees->rows, SizeIs(3));
   const auto* bars = item<BarPanel>(report, "The correction");
@@ -646,7 +646,7 @@ TEST_F(Temperature, ReportHasOnlyTheUsedFlights) {
   EXPECT_NE(item<TimePanel>(report, "GPS height minus the integral of the hydrostatic equation"), nullptr);
 
   const std::string html = report_html(report);
-  for (const char* word : {"flight1.nc", "flight3.nc", "excluded: ", "too small", "Which degree"})
+  for (const char* word : {"flight1.nc", "flight3.nc", "excluded: ", "too small", "Degree of the correction"})
     EXPECT_THAT(html, HasSubstr(word));
   const std::string body = html.substr(html.find("<body>"), html.find("id=\"data\"") - html.find("<body>"));
   EXPECT_THAT(body, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The files of examples/campaign over many flights, of which one is damaged.
+"""The files of examples/campaign on many flights, one of them damaged.
 
     campaign_test.py TOOL SOURCE_DIRECTORY
 
-Schedulers are not there: their arrays are run as scripts, with the variables that a scheduler sets.
+The job arrays run as scripts, without a scheduler, with the variables that a scheduler sets.
 """
 
 import csv
@@ -71,7 +71,7 @@ class CampaignTest(unittest.TestCase):
         return subprocess.run(["bash", "-c", command], cwd=self.path, env=environment, capture_output=True, text=True)
 
     def array(self, file, tasks, indices=None):
-        """The tasks of a job array, one after the other, and what became of them."""
+        """Runs the tasks of a job array one after the other; returns their results."""
         self.edit(file, "tasks=100\n", f"tasks={tasks}\n")
         return [self.run_script(f"bash {file}", PBS_O_WORKDIR=str(self.path), **{ARRAYS[file]: str(index)})
                 for index in (indices or range(tasks))]
@@ -177,7 +177,7 @@ class OneFlight(CampaignTest):
         self.assertEqual(len(verdicts[NAMES[1]]), len(expected))
 
     def tool_that(self, does):
-        """Puts another program in the place of the tool."""
+        """Replaces the tool by another program."""
         (self.path / "pcor").write_text(f"#!/bin/sh\n{does}\n")
         (self.path / "pcor").chmod(0o755)
         return {"PATH": f"{self.path}:{os.environ['PATH']}"}
@@ -192,7 +192,7 @@ class OneFlight(CampaignTest):
         self.assertIn(f"{NAMES[0]}: interrupted\n", self.run_script("./unfinished").stdout)
 
     def test_killed_tool_is_reported_as_failed(self):
-        """As by a system that has no memory left."""
+        """Like a system without free memory."""
         result = self.run_script(f"./one_flight '{NAMES[0]}'", **self.tool_that("kill -9 $$"))
         self.assertEqual((result.returncode, result.stderr), (1, f"{NAMES[0]}: killed, status 137\n"))
 

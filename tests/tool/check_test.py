@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""`pcor check` as a user meets it, on simulated flights, and on flights that lack what a check needs.
+"""`pcor check` on simulated flights, and on flights without the inputs of a check.
 
     check_test.py TOOL SOURCE_DIRECTORY
 
-Random numbers are fixed, so a test that passes does so on every run.
+Random numbers are fixed, so results are the same in every run.
 """
 
 import csv

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The command line as people expect one: options, outputs, hints, help, the terminal and the shell.
+"""The command line: options, outputs, hints, help, terminal and shell.
 
     command_line_test.py TOOL SOURCE_DIRECTORY
 """
@@ -63,7 +63,8 @@ class Lists(ComparisonTest):
         self.assertEqual([flight["name"] for flight in fit["flights"] if flight["holdout"]], ["two.nc", "three.nc"])
 
     def test_held_out_flights_of_a_glob_are_not_fitted(self):
-        """`refit one.nc --holdout t*.nc`: the shell makes two names of it, and the second would be fitted."""
+        """`refit one.nc --holdout t*.nc`: the shell expands the pattern to two names, and the second would be
+        fitted."""
         for command in ("refit", "improve"):
             self.refused(command, ONE, "--holdout", THREE, TWO, "-m", self.model(), "-o", self.path / "out.toml",
                          words=["--holdout", f"--holdout {THREE} --holdout {TWO}"], status=2)
@@ -296,8 +297,8 @@ class Terminal(ComparisonTest):
             self.assertEqual(text.split(), plain.split())
 
     def test_rows_of_tables_are_broken_between_columns(self):
-        plain = self.done("effects").stdout
-        text = self.shown(80, "effects")
+        plain = self.done("effects", "--verbose").stdout
+        text = self.shown(80, "effects", "--verbose")
         self.assertLessEqual(max(map(len, text.splitlines()[:-1])), 80)
         self.assertEqual(text.split(), plain.split())
         self.assertRegex(text, r"(?m)^static-lag +lag +static-line +static-line\n +pneumatic lag of the static line\n")
@@ -315,7 +316,7 @@ class Terminal(ComparisonTest):
     def test_labels_of_notes_are_bold_on_a_terminal(self):
         late = self.model(replace(r"^valid_from = .*$", 'valid_from = "2012-01-01"'))
         numbered = self.shown(9000, "compare", ONE, "-m", late, TERM="xterm")
-        self.assertIn("\n\033[1mnote 1\033[0m: warning: the law is valid", numbered)
+        self.assertIn("\n\033[1mwarning 1\033[0m: the law is valid", numbered)
         self.assertIn("\n\033[1mnote 2\033[0m: ", numbered)
         complete = self.shown(9000, "compare", ONE, "-m", late, "--verbose", TERM="xterm")
         self.assertIn("\n\033[1mWarning\033[0m: the law is valid", complete)
@@ -327,6 +328,9 @@ class Terminal(ComparisonTest):
         command = text.strip().splitlines()[-1]
         self.assertRegex(command, rf"^  {re.escape(str(TOOL))} (process|refit) ")
         self.assertEqual(command.strip(), self.done("compare", ONE, "-m", model).stdout.strip().splitlines()[-1].split(": ")[-1])
+        commands = [line for line in self.done("inspect", ONE).stdout.splitlines() if line.startswith(f"  {TOOL} ")]
+        self.assertGreater(len(commands), 1)
+        self.assertLessEqual(set(commands), set(self.shown(60, "inspect", ONE).splitlines()))
 
 
 class Shell(ComparisonTest):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""`pcor compare`, `pcor refit` and `pcor simulate` as a user meets them, on simulated flights with a known law.
+"""`pcor compare`, `pcor refit` and `pcor simulate` on simulated flights with a known law.
 
     comparison_test.py TOOL SOURCE_DIRECTORY
 
-The flights are a quarter of an hour of a C-130 with the usual noise, some thousand samples in use; the law is
-equation 18, which the model has too. Random numbers are fixed, so a test that passes does so on every run.
+The flights are 15 minutes of a C-130 with the usual noise, about 1000 used samples; the law is equation 18, as in the
+model. Random numbers are fixed, so results are the same in every run.
 """
 
 import csv
@@ -119,7 +119,7 @@ class ComparisonTest(ToolTest):
         return self.json_of("refit", *flights, "-m", model, "-o", output, *arguments)
 
     def refused(self, *arguments, words, output=None, status=1):
-        """One line with the words; nothing is written, be there an old output or not."""
+        """One line with the words; no file is written, with or without an existing output."""
         output = output or self.path / "out.toml"
         if arguments[0] == "refit" and not {"-o", "--output"} & set(arguments):
             arguments += ("-o", output)
@@ -139,7 +139,7 @@ class ComparisonTest(ToolTest):
         return result.stderr
 
     def run_as_printed(self, text):
-        """The command at the end of a text, run by a shell as a user would who copies it."""
+        """Runs the command at the end of a text in a shell."""
         command = re.search(r": (\S*pcor \S.*)$", text.rstrip().splitlines()[-1]).group(1)
         environment = os.environ | {"PATH": f"{TOOL.parent}:{os.environ['PATH']}"}
         result = subprocess.run(command, shell=True, cwd=self.path, env=environment, capture_output=True, text=True)
@@ -161,7 +161,7 @@ def errors_of(refit):
 
 
 def addresses_in(html):
-    """Except the name of the SVG language, which a browser does not request."""
+    """The name of the SVG language is excepted: a browser does not request it."""
     return set(re.findall(r"https?://[^\s\"'<>]+", html)) - {"http://www.w3.org/2000/svg"}
 
 
@@ -252,19 +252,19 @@ class Compare(ComparisonTest):
         self.assertEqual(result["masks"]["used"], result["models"][0]["samples"])
 
     def test_the_true_law_leaves_the_noise(self):
-        """The floor and the rms are each found from some 1000/4 independent samples, which is good to
-        1/sqrt(2 x 250) = 4.5 %; both to 6 %, of which 20 % is three times."""
+        """Floor and rms are estimated from about 1000/4 independent samples: each to 1/sqrt(2 x 250) = 4.5 %, the ratio
+        to 6 %; the tolerance of 20 % is three times that."""
         model = self.compare()["models"][0]
         self.assertAlmostEqual(model["rms_hpa"] / model["noise_rms_hpa"], 1.0, delta=0.20)
 
     def test_the_true_law_has_no_bias(self):
-        """Four standard errors: by chance one time in 16000."""
+        """Tolerance: four standard errors, exceeded by chance in 1 of 16000 cases."""
         model = self.compare()["models"][0]
         self.assertLess(abs(model["bias_hpa"]), 4.0 * model["bias_stderr_hpa"])
 
     def test_an_error_of_a0_is_the_bias(self):
-        """The residual is linear in a0, so two models differ by 1e-3 p to the rounding of the file's floats
-        (1e-7 of p); more than the true law's is for the model to subtract, hence the sign."""
+        """The residual is linear in a0, so two models differ by 1e-3 p to the rounding of the floats in the file (1e-7
+        of p). The residual is reference minus model: a larger a0 makes it smaller."""
         residuals = self.path / "residuals.nc"
         other = self.model(with_a0(0.005127875), "other.toml")
         first, second = self.compare("-m", other, "--residuals", residuals)["models"][:2]
@@ -278,8 +278,8 @@ class Compare(ComparisonTest):
         self.assertIn("C-130 PSFD/QCF, equation 18 has the smallest rms.", text)
 
     def test_gps_does_not_rank_models_or_apply_a_wrong_one(self):
-        """A model of zeros corrects nothing. The noise by GPS contains gusts and errors of the model, so the rms is not
-        compared with it."""
+        """A model of zeros corrects nothing. The noise by GPS contains gusts and errors of the model, so it is not
+        compared with the rms."""
         zeros = self.model(lambda toml: replace(r" = [\d.]+ \}$", " = 0 }")(toml).replace("equation 18\"", "zeros\""), "zeros.toml")
         for models in ((zeros,), (zeros, self.model())):
             names = [word for model in models for word in ("-m", model)]
@@ -292,7 +292,7 @@ class Compare(ComparisonTest):
                 self.assertRegex(run.stdout.rstrip().splitlines()[-1], "pcor refit .* --reference height --reference wind ")
 
     def test_heights_alone_advise_no_refit(self):
-        """Heights do not determine the level of delta-p, so that a refit to them keeps that of the model."""
+        """Heights do not determine the level of delta-p, so a refit to heights keeps the level of the model."""
         zeros, page, output = self.model(replace(r" = [\d.]+ \}$", " = 0 }")), self.path / "compare.html", self.path / "compare.json"
         text = self.run_tool("compare", ONE, "-m", zeros, "--reference", "height", "--report", page, "--json", output).stdout.splitlines()
         self.assertIn("GPS does not determine the mean delta-p error", text[0])
@@ -398,7 +398,7 @@ class ResidualFile(ComparisonTest):
         self.assertIn("float RESIDUAL_1(Time)", header)
 
     def test_rms_equals_that_of_the_json(self):
-        """To the rounding of float, 6e-8 of each value."""
+        """Tolerance: rounding of floats, 6e-8 of each value."""
         path, result = self.residuals("-m", self.model(with_a0(0.005), "other.toml"), "--reference", "lams")
         with xarray.open_dataset(path) as file:
             for number, model in enumerate(result["models"], 1):
@@ -428,7 +428,8 @@ class ResidualFile(ComparisonTest):
                 self.assertEqual(numpy.count_nonzero(flagged & used), counts[name], name)
 
     def test_residual_is_the_difference_of_two_deltas(self):
-        """Both are of one pressure, so their difference is the residual, to the rounding of floats of 10 hPa (1e-6)."""
+        """Both refer to the same pressure, so their difference is the residual, to the rounding of floats of 10 hPa
+        (1e-6)."""
         path, _ = self.residuals()
         with xarray.open_dataset(path) as file:
             residual = file["RESIDUAL_1"].values
@@ -483,13 +484,14 @@ class References(ComparisonTest):
         self.assertRegex(text, r"total pressure of 'PSFD\+QCF', .*\n.*\n.*\nC-130 PSFRD/QCFR, equation 18 +\d")
 
     def test_the_total_pressure_of_true_systems_is_one(self):
-        """Two pairs of transducers, of about 0.01 hPa each; static defects cancel, so no law is needed."""
+        """Two pairs of transducers with a noise of about 0.01 hPa each; delta-p cancels, so no law is needed."""
         result = self.compare("--reference", "total:PSFRD+QCFR")
         self.assertLess(result["models"][0]["rms_hpa"], 0.05)
         self.assertIsNone(result["models"][0]["r2"])
 
     def test_the_reference_with_the_largest_ratio_decides(self):
-        """A drift of the static transducer by 2 hPa/h hardly changes the residual by the laser, but the total pressure."""
+        """A drift of the static transducer by 2 hPa/h changes the total pressure, and hardly the residual by the
+        laser."""
         drift = '\n[[effect]]\nid = "time-drift"\non = "PSFD"\nstatic = 2.0\n'
         scenario, flight = self.write("drift.toml", SCENARIO + drift), self.path / "drift.nc"
         self.done("simulate", scenario, "-o", flight, "--quiet")
@@ -510,8 +512,8 @@ class References(ComparisonTest):
                 self.assertIn(f"pcor {command} ", html)
         # A wrong law too: the reason for a refit is a ratio that a refit changes.
         text = self.done("compare", flight, "-m", self.model(with_a0(0.007))).stdout.splitlines()[-1]
-        self.assertRegex(text, r"The rms is [\d.]+ times the noise by lams, and [\d.]+ times the noise by total:PSFRD\+QCFR, "
-                               r"which a refit does not change\. To refit its coefficients: ")
+        self.assertRegex(text, r"The rms is [\d.]+ times the noise by lams, and [\d.]+ times the noise by total:PSFRD\+QCFR, which "
+                               r"a refit does not change\. To refit its coefficients: ")
 
     def test_static_system(self):
         """Both laws are true, so the residual is the noise of two transducers, each about 0.01 hPa."""
@@ -526,8 +528,7 @@ class References(ComparisonTest):
         self.assertLess(result["models"][0]["rms_hpa"], 0.02)
 
     def test_pressure_of_the_avionics(self):
-        """PS_A comes 0.6 s late, which in a climb of 5 m/s is 0.35 hPa: less than 0.5 hPa in all, and more
-        than the noise."""
+        """PS_A is 0.6 s late, 0.35 hPa in a climb of 5 m/s: more than the noise, and in total less than 0.5 hPa."""
         result = self.compare("--reference", "pressure:PS_A")
         climb = next(part for part in result["models"][0]["regimes"] if part["name"] == "climb")
         self.assertLess(result["models"][0]["rms_hpa"], 0.5)
@@ -544,16 +545,16 @@ class References(ComparisonTest):
         self.assertIn("--reference pressure:PS_A", self.run_as_printed(text))
 
     def test_a_reference_without_variance_has_no_r2(self):
-        """Delta-p of the static pressure itself is 0 everywhere: there is no variance to be explained."""
+        """With the measured static pressure as the reference, delta-p is 0: there is no variance to explain."""
         model = self.compare("--reference", "pressure:PSFD")["models"][0]
         self.assertIsNone(model["r2"])
 
 
 class Refit(ComparisonTest):
     def assert_true_law(self, result):
-        """Four standard errors: of three normal coefficients one is outside by chance once in 5000 flights.
-        Over 120 seeds of this short flight a0 and a2 scattered by 1.2 of their errors; with that still once in
-        600, and the greatest was 3.4."""
+        """Tolerance: four standard errors, exceeded by one of three normal coefficients in 1 of 5000 flights. With 120
+        seeds of this short flight a0 and a2 scattered by 1.2 standard errors, which gives 1 of 600 flights; the largest
+        deviation was 3.4."""
         effects = [effect for effect in result["effects"] if not effect["id"].startswith("reference:")]
         self.assertEqual([effect["id"] for effect in effects], list(LAW))
         for effect in effects:
@@ -569,7 +570,7 @@ class Refit(ComparisonTest):
             self.assertLessEqual({"id", "parameters", "stderr"}, set(effect))
 
     def test_unknown_rms_before_is_omitted(self):
-        """At the start the root is not real at some angles of attack."""
+        """With the initial coefficients the root is not real at some angles of attack."""
         formula = 'formula = "1 - sqrt(1 + k * sin(60 * attack))"\nparameters = { k = 1.02 }\n'
         effect = f'\n[[effect]]\nid = "root"\nwhere = "static"\nunit = "hPa"\nsource = "test"\n{formula}'
         model, output = self.model(lambda toml: toml + effect), self.path / "out.toml"
@@ -600,8 +601,8 @@ class Refit(ComparisonTest):
         self.assert_true_law(self.refit(model=self.model(with_a0(0.01))))
 
     def test_result_is_independent_of_the_start(self):
-        """Every coefficient enters linearly, so only the tolerance of the fit is left, far below an error. Not
-        farther than 0.02: from 0.05 on, 40 hPa, some samples have no airspeed and are masked."""
+        """Every coefficient is linear, so results differ by the tolerance of the fit, far below a standard error. The
+        start is at most 0.02 away: from 0.05, 40 hPa, some samples have no airspeed and are masked."""
         far, near = self.refit(model=self.model(with_a0(0.02))), self.refit()
         self.assertEqual(far["samples"], near["samples"])
         for name, error in errors_of(near).items():
@@ -611,7 +612,7 @@ class Refit(ComparisonTest):
         self.assert_true_law(self.refit("--reference", f"static:{OTHER_SYSTEM}", model=self.model(with_a0(0.01))))
 
     def test_the_written_file_restores_the_model(self):
-        """The same samples through the same formulas, so equal except for the order of a sum."""
+        """Equal except for the order of a sum: samples and formulas are the same."""
         fit = self.refit(model=self.model(with_a0(0.007)))
         model = self.compare(model=self.path / "out.toml")["models"][0]
         self.assertEqual(model["samples"], fit["samples"])
@@ -641,7 +642,7 @@ class Refit(ComparisonTest):
         self.link(ONE, "flight 1.nc")
         self.model()
         text = self.done("refit", "flight 1.nc", "-m", "model.toml", "-o", "my fit.toml", cwd=self.path).stdout
-        self.assertIn("compare", self.run_as_printed(text))
+        self.assertIn("diagnose", self.run_as_printed(text))
 
     def test_the_command_to_copy_for_several_flights_runs(self):
         flights = [self.link(flight, name).name for flight, name in ((ONE, "flight 1.nc"), (TWO, "flight 2.nc"))]
@@ -680,9 +681,9 @@ class Refit(ComparisonTest):
         self.assertGreaterEqual(fit["drift_hpa"], 0.0)
 
     def test_coefficient_of_a_stage_is_fixed_in_the_next(self):
-        """The rest is as if the coefficient had been fixed where the stage left it, but for the weights: of the
-        noise of a flight of twenty minutes, found with a coefficient more or less, which moves the others by
-        less than half of their errors."""
+        """The other coefficients are those of a fit with the coefficient fixed at the result of the stage, except for
+        the weights: the noise of a flight of 20 minutes is estimated with one coefficient more, which changes the
+        others by less than half of their standard errors."""
         staged = self.refit("--stage", "pitch manoeuvre: static-alpha")
         a1 = values_of(staged)["a1"]
         held = self.refit("--fix", "static-alpha", model=self.model(replace(r"a1 = .* \}", f"a1 = {a1!r} }}")))
@@ -705,9 +706,9 @@ class Refit(ComparisonTest):
         self.assertEqual(fit["samples"], round(0.6 * everything["samples"]))
 
     def test_outliers_move_least_squares_more_than_huber(self):
-        """Of 5 % of the laser's speeds 6 m/s too large, about 6 hPa: ten times the noise, and short of the
-        8 m/s from which the laser is taken as unlocked. The mean error is 0.3 hPa, a0 3.5e-4. Huber's loss limits
-        each of them to four deviations of ten, so less than half of the movement of least squares is left."""
+        """5 % of the laser speeds are 6 m/s too large, about 6 hPa: ten times the noise, and below the 8 m/s from which
+        the laser counts as unlocked. The mean error is 0.3 hPa, 3.5e-4 in a0. Huber's loss limits each outlier to four
+        of its ten standard deviations, so the change is less than half that of least squares."""
         spoilt = self.path / "spoilt.nc"
         spoilt.write_bytes(ONE.read_bytes())
         with netCDF4.Dataset(spoilt, "a") as flight:
@@ -748,11 +749,11 @@ class Refit(ComparisonTest):
                      words=["given twice"])
 
     def test_a_copied_flight_gives_the_same_result(self):
-        """Twice the squares have their minimum where once had it, but for the weights: the noise is found from
-        twice as many samples beside as many coefficients, and how slow it is a flight of twenty minutes hardly
-        tells: that moves the estimate by less than its error. The part of the errors by noise gets smaller by the
-        root of two, to a fifth for the same reason; the part by the misfit of the law, which two flights show better
-        than one, may grow by a third."""
+        """Twice the sum of squares has the same minimum, except for the weights: the noise is estimated from twice as
+        many samples, and 20 minutes hardly determine its slow part. This changes the estimate by less than its standard
+        error. The part of the standard errors due to noise decreases by the square root of two, within a fifth for the
+        same reason. The part due to the misfit of the law, which two flights determine better than one flight, may
+        increase by a third."""
         copy = self.path / "copy.nc"
         shutil.copy(ONE, copy)
         once, twice = self.refit(), self.refit(flights=(ONE, copy))
@@ -762,7 +763,7 @@ class Refit(ComparisonTest):
             self.assertLess(errors_of(twice)[name] / error, 1.35)
 
     def test_the_memory_limit_does_not_change_results(self):
-        """The same sums in the same order; 1e-9 is for the steps of the minimiser."""
+        """Sums and their order are the same; 1e-9 allows for the steps of the minimiser."""
         for more in ((), ("--stage", "pitch manoeuvre: static-alpha")):
             with self.subTest(more):
                 with_memory = self.refit(*more, flights=(ONE, TWO))
@@ -811,7 +812,7 @@ class Refit(ComparisonTest):
         self.assertIn("static-constant.a0 is at its bound 0.01", "\n".join(note_texts(fit)))
 
     def test_an_undetermined_effect_is_reported(self):
-        """Without a yaw manoeuvre nothing is known of the square of the sideslip; the rest is still found."""
+        """Without a yaw manoeuvre the coefficient of the squared sideslip is not determined; the others are."""
         model = self.model(with_effect('id = "static-beta-even"\n'))
         fit = self.refit(flights=(STEADY,), model=model)
         note = next(note for note in note_texts(fit) if "static-beta-even.b2" in note)
@@ -843,13 +844,13 @@ class RefitOfTooMuch(ComparisonTest):
         self.assertIn("speed run", note)
 
     def test_result_is_not_worse_than_the_start(self):
-        """The start lies inside all bounds, so no minimum within them has larger squares. One per cent is for
-        the weights: samples count by the noise around them, which the rms does not know."""
+        """The start lies inside all bounds, so the minimum within the bounds is not larger. One per cent allows for the
+        weights: samples are weighted by the local noise, which the rms does not use."""
         fit = self.fit("--loss", "none")
         self.assertLess(fit["rms_hpa"], 1.01 * fit["rms_before_hpa"])
 
     def test_omitting_an_effect_does_not_improve_the_result(self):
-        """A smaller model is a special case of the larger; one per cent as above."""
+        """A smaller model is a special case of the larger one; one per cent allows for the weights."""
         fit = self.fit("--loss", "none")
         for omission in fit["omissions"]:
             self.assertLess(fit["rms_hpa"], 1.01 * omission["rms_hpa"], omission["effect"])
@@ -857,7 +858,7 @@ class RefitOfTooMuch(ComparisonTest):
 
 class BadInput(ComparisonTest):
     def both(self, *arguments, words, flights=(ONE,), model=None):
-        """Refused by `compare` and by `refit` alike."""
+        """Both `compare` and `refit` refuse the arguments."""
         model = model or self.model()
         for command, output in (("compare", "--residuals"), ("refit", "--output")):
             with self.subTest(command):
@@ -1017,7 +1018,7 @@ class BadOutput(ComparisonTest):
                 self.refused("refit", ONE, "-m", self.model(), option, output, words=["out.toml", "twice"])
 
     def test_a_stopped_run_leaves_no_partial_file(self):
-        """Stopped at several moments of its tenth of a second."""
+        """Stops runs of about 0.1 s at several moments."""
         scenario, model = self.write("scenario.toml", SCENARIO), self.model()
         before = set(contents(self.path))
         outputs = {"out.nc": ("simulate", scenario, "-o"), "out.toml": ("refit", ONE, "-m", model, "-o"),

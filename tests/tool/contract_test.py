@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What process promises of every record, whatever stands in its inputs: a value, or none and a bit that says why.
+"""For any input, `process` writes in every record a value, or a missing value and a bit that gives the reason.
 
     contract_test.py TOOL SOURCE_DIRECTORY
 
-Each input of the model is spoilt in records of its own by each kind of value that a file may hold.
+Each input of the model gets each kind of value that a file may contain, in separate records.
 """
 
 import itertools

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""`pcor diagnose`, `pcor add` and `pcor improve` as a user meets them, on simulated flights with a known fault.
+"""`pcor diagnose`, `pcor add` and `pcor improve` on simulated flights with a known fault.
 
     diagnosis_test.py TOOL SOURCE_DIRECTORY
 
-The flights are a quarter of an hour of a C-130; the law is equation 18, which the model has too. Beside it one has
-no fault, one a lag of the static line, and one an effect of the engines that no catalogue knows. Random numbers are
-fixed, so a test that passes does so on every run.
+The flights are 15 minutes of a C-130; the law is equation 18, as in the model. One flight has no fault, one a lag of
+the static line, and one an effect of the engines that is not in the catalogue. Random numbers are fixed, so results are
+the same in every run.
 """
 
 import os
@@ -123,19 +123,19 @@ class Add(DiagnosisTest):
         self.assertEqual(model["effect"][-1]["parameters"], {"step": 0.0, "since": 4338.5})
 
     def test_an_added_effect_is_neutral(self):
-        """Neutral coefficients change no residual: not even its last bit."""
+        """Neutral coefficients change no bit of a residual."""
         self.add("static-lag", "static-attack", "static-mach2")
         first, second = self.compare("-m", self.path / "out.toml")["models"][:2]
         self.assertEqual(first["rms_hpa"], second["rms_hpa"])
 
     def test_an_added_effect_can_be_fitted(self):
-        """Within four standard errors of the truth, by chance missed one time in 16000."""
+        """Tolerance: four standard errors, exceeded by chance in 1 of 16000 cases."""
         self.add("static-lag", name="lag.toml")
         fit = self.refit(flights=(LAGGING,), model=self.path / "lag.toml")["effects"][-1]
         self.assertAlmostEqual(fit["parameters"]["tau"], 1.0, delta=4.0 * fit["stderr"]["tau"])
 
     def test_every_catalogue_effect_is_added_or_refused(self):
-        """Each can be added, or the message names the role whose variable is unknown."""
+        """Each effect can be added, or the message names the role whose variable is unknown."""
         for effect in self.json_of("effects")["effects"]:
             with self.subTest(effect["id"]):
                 if any(f'id = "{effect["id"]}"' in line for line in MODEL.splitlines()):
@@ -281,7 +281,7 @@ class Improve(DiagnosisTest):
 
 class BadInput(DiagnosisTest):
     def both(self, *arguments, words, flights=(ONE,), model=None, status=1):
-        """Refused by `diagnose` and by `improve` alike."""
+        """Both `diagnose` and `improve` refuse the arguments."""
         model = model or self.model()
         for command in (("diagnose",), ("improve", "-o", self.path / "out.toml")):
             with self.subTest(command[0]):
@@ -473,7 +473,7 @@ class WhatTakesPart(DiagnosisTest):
         # 1.5 hPa at 50 %, which the flaps have most of the time.
         self.assertAlmostEqual(fit["flaps_out"]["bias_hpa"], 1.4, delta=0.3)
         text = self.done("refit", FLAPS, "-m", self.model(), "-o", self.path / "out.toml").stdout
-        self.assertRegex(text, r"not in the fit: \d+ samples with flaps out, residual \+1\.\d\d \+- 0\.\d\d hPa \(standard error\), "
+        self.assertRegex(text, r"excluded from the fit: \d+ samples with flaps extended, residual \+1\.\d\d \+- 0\.\d\d hPa \(standard error\), "
                                r"scatter \d\.\d\d hPa")
 
     def test_diagnose_tests_flap_samples(self):
@@ -501,12 +501,12 @@ class WhatTakesPart(DiagnosisTest):
                 file[name][first:first + count] = file[name][first]
         result = self.compare(flights=(flight,))
         self.assertEqual(result["masks"]["frozen"], 160)
-        for words in (r"VLAMS is frozen, at .* m/s from .* \(100 records\)", r"QCF is frozen, .* \(60 records\)"):
+        for words in (r"VLAMS is frozen at .* m/s from .* \(100 records\)", r"QCF is frozen .* \(60 records\)"):
             self.assertRegex(" ".join(note_texts(result)), words)
         self.assertEqual(self.compare()["masks"]["frozen"], 0)
 
     def test_neutral_model_keeps_the_samples_of_its_flight(self):
-        """Pressures that are off by 1.4 % of the static pressure put the airspeed off by 7 to 11 m/s."""
+        """An error of 1.4 % of the static pressure changes the airspeed by 7 to 11 m/s."""
         flight = self.path / "off.nc"
         shutil.copy(ONE, flight)
         with netCDF4.Dataset(flight, "a") as file:
@@ -523,7 +523,7 @@ class WhatTakesPart(DiagnosisTest):
 
 class DoesNoHarm(DiagnosisTest):
     def test_improve_refuses_a_model_that_is_worse_on_held_out_flights(self):
-        """Fitted to a flight with an error of the port, it is wrong on the flight without."""
+        """A model fitted to a flight with an error of the port is wrong on the flight without the error."""
         arguments = ("improve", BIASED, "-m", self.model(), "--holdout", ONE, "-o", self.path / "out.toml")
         self.refused(*arguments, words=(" times the rms ", "--force"))
         self.done(*arguments, "--force", "--quiet")

@@ -60,7 +60,7 @@ class PageTest(unittest.TestCase):
         path = self.folder / "build/release/tools"
         path.mkdir(parents=True)
         (path / "pcor").symlink_to(TOOL)
-        (path / "pcor-figures").symlink_to(SOURCE / "tools/pcor-figures")
+        (path / "pcor-figures").symlink_to(TOOL.parent / "pcor-figures")
         self.environment = {**os.environ, "PATH": f"{path}:{os.environ['PATH']}", "PCOR_MODELS": str(SOURCE / "data/models")}
 
     def run_command(self, command):
@@ -176,7 +176,7 @@ class Text(unittest.TestCase):
                     self.assertIn(anchor, anchors(linked), f"{path.relative_to(SOURCE)}: {target}")
 
     def test_pages_are_short(self):
-        """A first page that is read, and documents that are read to the end."""
+        """Limits on the lengths of the first page and of the documents."""
         first = (SOURCE / "README.md").read_text().split("## For the developer")[0]
         self.assertLessEqual(len(first.split()), 400)
         self.assertLess(sum(len(path.read_text().split()) for path in (SOURCE / "docs").glob("*.md")), 12000)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tool where everything is against it: full disks, signals, closed streams, texts that nobody wrote.
+"""The tool under failures of the system: full disks, signals, closed streams, random texts.
 
     hostile_test.py TOOL SOURCE_DIRECTORY
 """
@@ -57,7 +57,7 @@ class Disks(HostileTest):
         self.assertRegex(result.stderr, r"\Apcor: .*out\.nc.*full.*; make room or choose another output\n\Z")
 
     def test_refusal_on_a_full_disk_keeps_its_message(self):
-        """HDF5 closes what it cannot write when the program ends."""
+        """At the end of the program HDF5 tries again to write what failed."""
         script = 'mount -t tmpfs -o size=300k none "$1" && head -c 100k /dev/zero > "$1/filled" && ' \
                  '"$0" process "$2" -m "$3" -o "$1/out.nc" --all --quiet; echo "status $?, left: $(ls -A "$1")"'
         result = subprocess.run(["unshare", "-rm", "sh", "-c", script, TOOL, self.path, FLIGHT, LAW],

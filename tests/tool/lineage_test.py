@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a model that was fitted is called, where it says that it comes from, and what a report says of its making.
+"""Name and origin of a fitted model, and the origin that a report states.
 
     lineage_test.py TOOL SOURCE_DIRECTORY
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Many flights in one command, only what is stale done again, and models found by name.
+"""Many flights in one command, repetition of stale outputs only, and models by name.
 
     many_flights_test.py TOOL SOURCE_DIRECTORY
 
@@ -289,7 +289,7 @@ class Stale(ManyFlightsTest):
 
 class OpenFiles(ManyFlightsTest):
     def test_flights_are_not_held_open_together(self):
-        """A program may have few files open; each flight also holds several MB of the HDF5 library then."""
+        """The number of open files is limited, and an open flight needs several MB in the HDF5 library."""
         flight = self.path / "0.nc"
         self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
         flights = [flight] + [Path(shutil.copy(flight, self.path / f"{number}.nc")) for number in range(1, 26)]

@@ -85,7 +85,8 @@ class Order(ComparisonTest):
         return without_run(json.loads(result.stdout))
 
     def assert_no_order(self, *arguments, option, values):
-        """Rotations, in which each value is once at each place and before each other value, give the same result."""
+        """Rotations of the values give the same result: each value is once at each place and before each other
+        value."""
         results = [self.result([*arguments, *(word for value in values[i:] + values[:i] for word in (option, value))])
                    for i in range(len(values))]
         for result in results[1:]:

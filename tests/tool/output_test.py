@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""What a corrected flight says of itself: the model that made it, the input, and the CF and ACDD conventions.
+"""Attributes of a corrected flight: model, input, and the CF and ACDD conventions.
 
     output_test.py TOOL SOURCE_DIRECTORY
 
-The example flight stands for one of another institution: it is given latitude, longitude and other conventions.
+The example flight gets latitude, longitude and other conventions, like a flight of another institution.
 """
 
 import json

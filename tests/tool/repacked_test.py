@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The same flight in other files: however it is stored, process gives the same results.
+"""One flight in several file formats: process gives the same results.
 
     repacked_test.py TOOL SOURCE_DIRECTORY
 """

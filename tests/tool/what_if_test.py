@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The what-if of the reports of `pcor diagnose` and `pcor improve`, under the hand in headless chromium: what the page
-computes is what the tool finds when the command that the page gives is run.
+""""What if" in the reports of `pcor diagnose` and `pcor improve`, in headless chromium: the results of the page equal
+those of the tool with the command from the page.
 
     what_if_test.py TOOL SOURCE_DIRECTORY
 
@@ -160,12 +160,12 @@ class OneEffect(WhatIfTest):
         _, given, again, _ = held_out()
         self.assertEqual(given, "–")
         self.assertGreater(float(again), 0)
-        self.assertNotIn("given model", self.value(labels))
+        self.assertNotIn("input model", self.value(labels))
         published = self.path / "published.html"
         self.json_of("diagnose", FIRST, SECOND, "-m", self.model(), "--report", published)
         self.browser.open(published.as_uri())
         self.assertGreater(float(held_out()[1]), 0)
-        self.assertIn("given model", self.value(labels))
+        self.assertIn("input model", self.value(labels))
 
     def test_effects_that_were_not_found_are_listed_apart(self):
         self.diagnosed(FIRST, SECOND)
@@ -174,7 +174,7 @@ class OneEffect(WhatIfTest):
         self.assertEqual(lists, [[effect for effect, why in reasons if (why == "not found") is apart] for apart in (False, True)])
         gains = self.value("[...document.querySelectorAll('.what-if-effects .gain')].map(({textContent}) => textContent)")
         for gain in gains:
-            self.assertRegex(gain, r"^χ² (falls|rises) by [\d.]+$")
+            self.assertRegex(gain, r"^χ² (decreases|increases) by [\d.]+$")
 
     def test_the_fall_of_chi2_is_the_square_of_a_coefficient_over_its_error(self):
         self.diagnosed(FIRST, SECOND)

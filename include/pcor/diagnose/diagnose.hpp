@@ -220,7 +220,7 @@ void describe(const Finding& self, Field& field) {
   field("estimates", self.estimates, "estimated coefficients");
   field("rms_hpa", self.rms, "contribution to the residual that the model does not absorb, rms");
   field("largest_rms_hpa", self.largest_rms, "the same in the reference in which it is largest, rms");
-  field("largest_reference", self.largest_reference, "that reference; empty: the first one");
+  field("largest_reference", self.largest_reference, "reference of largest_rms_hpa; empty: the first one");
   field("worst_hpa", self.worst, "largest contribution of the effect alone, with sign");
   field("worst_flight", self.worst_flight, "flight of the largest contribution");
   field.time("worst_time", self.worst_time, "time of the largest contribution");

@@ -17,7 +17,7 @@ std::string verdict_text(const Diagnosis& diagnosis);
 /// many have a known usual size. If the first number is 0, the flights cannot test the model.
 std::pair<std::size_t, std::size_t> detectable_at_usual_size(const Diagnosis& diagnosis);
 
-/// Estimates with standard errors, both to two digits of the error: "tau = 0.151 ± 0.006 s".
+/// Estimates with standard errors, both to two digits of the error: "tau = 0.151 +- 0.006 s".
 std::string estimates_text(const std::vector<CoefficientEstimate>& estimates);
 
 /// Upper limits of the coefficients of an undetected effect: "|tau| < 0.12 s".

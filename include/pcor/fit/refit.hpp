@@ -196,7 +196,7 @@ struct RefitResult {
   double between_flights = 0.0;
   double least_squares_rms = 0.0;  ///< plain least squares on the same samples, hPa; NaN if unknown
   double r_squared = 0.0;
-  /// hPa, with the coefficients of the file; NaN if samples have no residual with them.
+  /// hPa, with the input model; NaN if samples have no residual with them.
   double rms_before = 0.0;
   std::size_t outliers = 0;  ///< samples that differ from their prediction by more than the noise permits
   /// Ratio of the largest to the smallest singular value of the derivatives, each column normalised.
@@ -220,7 +220,7 @@ struct RefitResult {
   bool is_by_gps() const { return estimator == refit_estimator_of_gps; }
   /// Label of `noise_rms`: by GPS an upper limit, as in `ModelComparison::is_by_gps`.
   const char* noise_label() const { return is_by_gps() ? "max noise" : "noise"; }
-  /// Reason for which the model should not be used: the fit is worse than the coefficients of the file, or a
+  /// Reason for which the model should not be used: the fit is worse than the input model, or a
   /// held-out part has a significant bias. Otherwise empty.
   std::string worse{};
   std::vector<std::string> warnings{};  ///< reasons to doubt the fit, one sentence each
@@ -292,7 +292,7 @@ void describe(const RefitResult& self, Field& field) {
 /// Coefficients: least squares with Huber loss of residuals in bins of four seconds, each bin weighted by the
 /// square root of its sample count, each reference by the robust standard deviation of its residuals. Slow
 /// misfit of the model is not treated as drift: the correction is the best one over all flown conditions.
-/// From the coefficients of the file the linear problem is solved in closed form, within the bounds; its
+/// From the input model the linear problem is solved in closed form, within the bounds; its
 /// weights and derivatives are renewed until the loss is at its minimum. Every pass reduces each flight to a
 /// triangular factor; the factors are combined.
 ///

@@ -26,7 +26,7 @@ struct GpsDesign {
   bool by_wind = false;
   bool by_height = false;
 
-  static constexpr double max_error = 1.0;  ///< of a part that the flight determines, hPa
+  static constexpr double max_error = 1.0;  ///< error of a part that the flight determines, hPa
 
   bool determines_level() const { return level < max_error; }
 };

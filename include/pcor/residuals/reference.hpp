@@ -97,7 +97,7 @@ std::shared_ptr<const Reference> pressure_reference(std::string variable, std::s
 std::shared_ptr<const Reference> total_pressure_reference(ModelDefinition system);
 
 /// GPS heights: climb within a minute by the hydrostatic equation, from the pressure, temperature and
-/// humidity of the model, minus the climb by GPS, in hPa of the pressure at its end. Sensitive to the
+/// humidity of the model, minus the climb by GPS, in hPa of the pressure in its middle. Sensitive to the
 /// temperature and to static-pressure errors that change in a climb.
 ///
 /// The slope of isobaric surfaces along the track, a few metres per minute, and the height noise are part of

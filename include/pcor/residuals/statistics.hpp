@@ -40,7 +40,7 @@ void describe(const Statistics& self, Field& field) {
 /// unknown.
 bool fails_more(const Statistics& a, const Statistics& b);
 
-/// Text "not in the fit: 712 samples with flaps out, residual +2.30 +- 0.40 hPa (standard error),
+/// Text "excluded from the fit: 712 samples with flaps extended, residual +2.30 +- 0.40 hPa (standard error),
 /// scatter 1.10 hPa"; empty without samples.
 /// @param of_what for example "the fit"
 std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what);

@@ -71,11 +71,9 @@ class PressureReference final : public Reference {
     flight.require_values(variable_);
     if (!of_model_.empty() && is_computed_from(flight, variable_, of_model_)) {
       const std::string what = variable_ == of_model_ ? "is" : "is computed from " + of_model_ + ",";
-      notes.emplace_back(
-          Severity::warning,
-          fmt::format("the reference {} {} the static pressure of the model, so the comparison "
-                      "is circular; use an independent reference",
-                      variable_, what));
+      notes.emplace_back(Severity::warning, fmt::format("use an independent reference: {} {} the static "
+                                                        "pressure of the model; the comparison is circular",
+                                                        variable_, what));
     }
     ModelSamples samples;
     samples.columns = {
