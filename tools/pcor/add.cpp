@@ -94,8 +94,10 @@ void print(const ModelDefinition& extended, const Extension& extension, const Ad
     say("variable selected: {} = \"{}\"\n", role, variable);
   say("\n");
   say_written({options.output, options.common.json});
-  say("To fit it: {} refit {} -m {} -o {}\n", program(),
+  const bool has_laser = extended.variables.count(Quantity::lams_airspeed) != 0;
+  say("To fit it: {} refit {} -m {}{} -o {}\n", program(),
       options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output),
+      has_laser ? "" : " --reference static:OTHER.toml",
       output_file("fitted.toml", {options.model, options.output}));
 }
 

@@ -200,10 +200,10 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
     return fmt::format(
-        "To test a formula of {} on data outside the fit: {} improve {} -m {} --trace-variables -o {}",
+        "To test a formula of {} on held-out data: {} improve {} -m {} --trace-variables -o {}",
         variable.name, program(), flights, model, best);
   }
-  return "To see where the residual is largest: " + compare;
+  return fmt::format("To test a smooth surface on held-out data: {} -o {}", improve, best);
 }
 
 void print(const Diagnosis& diagnosis, const ModelDefinition& model, const ChosenReferences& references,
@@ -220,7 +220,7 @@ void print(const Diagnosis& diagnosis, const ModelDefinition& model, const Chose
   }
   say("rms {:.3f} hPa; noise {:.3f} hPa", diagnosis.rms_given, diagnosis.noise_rms);
   if (diagnosis.is_refitted) {
-    say("; rms {:.3f} hPa with the free coefficients fitted again, linearised", diagnosis.residual_rms);
+    say("; rms {:.3f} hPa after a linear refit of the free coefficients", diagnosis.residual_rms);
   }
   say("\n");
   if (in_full) {

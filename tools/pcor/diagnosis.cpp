@@ -136,8 +136,8 @@ ModelEffect shaped_effect(const std::string& argument) {
 void add_candidate_options(CLI::App& command, CandidateOptions& options) {
   add_list_option(command, "--try", options.formulas,
                   "test a user-defined effect too: its formula, hPa at the static ports, with a coefficient "
-                  "k and variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, "
-                  "try-2 ... in alphabetical order")
+                  "k and variables by netCDF name or by role: 'k * ENGTRQ / 100'; in alphabetical order the "
+                  "formulas are named try-1, try-2, ...")
       ->type_name("FORMULA");
   command
       .add_option("--candidates", options.file,

@@ -139,6 +139,25 @@ void print_one(const EffectInfo& info) {
   say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", info.id, fmt::join(typical, ", "));
 }
 
+/// Effects of each component of the instrument.
+void print_short() {
+  std::vector<std::pair<std::string_view, std::vector<std::string_view>>> places;
+  const auto add = [&places](std::string_view place, std::string_view id) {
+    const auto found =
+        std::find_if(places.begin(), places.end(), [place](const auto& each) { return each.first == place; });
+    if (found != places.end())
+      found->second.push_back(id);
+    else
+      places.push_back({place, {id}});
+  };
+  for (const EffectInfo& info : effect_info) add(component_of(info), info.id);
+  for (const EffectInfo& info : surface_info) add(component_of(info), info.id);
+  say("{:<14} effects\n", "place");
+  for (const auto& [place, ids] : places) say("{:<14} {}\n", place, fmt::join(ids, ", "));
+  say("{} known errors that no term of a model can describe, and all formulas: add --verbose\n",
+      std::size(effects_without_trace));
+}
+
 void print_all() {
   say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
   const auto print_row = [](const EffectInfo& info) {
@@ -170,7 +189,7 @@ void run(const EffectsArguments& options) {
     if (says) print_one(info);
   } else {
     json.write(Catalogue());
-    if (says) print_all();
+    if (says) is_verbose() ? print_all() : print_short();
   }
   if (!says) return;
   say_written({options.common.json});

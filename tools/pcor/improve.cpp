@@ -46,6 +46,14 @@ void print(const Improvement& improvement, const ChosenReferences& references,
     print_flaps_out(improvement.fit.flaps_out, "the fit");
     say("\n");
   }
+  std::vector<std::string> added;
+  for (const ImproveStep& step : improvement.steps) {
+    if (!step.added.empty()) added.push_back(step.added);
+  }
+  const ImproveStep& last = improvement.steps.back();
+  say("{}: rms {:.3f} hPa, held out {:.3f} hPa, noise {:.3f} hPa\n",
+      added.empty() ? "no effect added" : fmt::format("added {}", fmt::join(added, ", ")), last.rms_train,
+      last.rms_holdout, last.noise_rms);
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
   say("{:<24} {:>10} {:>10} {:>10} {:>13}  {}\n", "rms, hPa", "training", "held out", "noise", "coefficients",
       "effect");
@@ -72,7 +80,7 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   } else if (improvement.holdout_is_flights) {
     say("held out: the last {:.0f} % of every flight\n", 100.0 * (1.0 - options.fit.training_share));
   } else {
-    say("held out: every fifth five minutes of the flights in turn, without outliers; hold out whole flights "
+    say("held out: five-fold cross-validation in blocks of 5 min, without outliers; hold out whole flights "
         "with --holdout\n");
   }
   print_fit_summary(improvement.fit);
@@ -83,7 +91,10 @@ void print(const Improvement& improvement, const ChosenReferences& references,
       if (const std::string text = rivals_text(step); !text.empty()) say("  {}\n", text);
     }
   }
-  say("stopped: {}\n", improvement.why_stopped);
+  std::string stopped = improvement.why_stopped;
+  for (std::size_t at = 0; (at = stopped.find("; rejected: ", at)) != std::string::npos;)
+    stopped.replace(at, 2, "\n");
+  say("stopped: {}\n", stopped);
   if (is_verbose()) print_unexplained(improvement.steps.back().diagnosis.unexplained);
   say_notes(improvement.fit.notes);
   say_written({options.output, options.common.report, options.common.json});

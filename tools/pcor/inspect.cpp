@@ -238,34 +238,45 @@ void print_flown(const Inspection& flight) {
 
 void print_by_gps(const GpsDesign& gps) {
   const auto text = [](double error, const char* manoeuvre) {
-    if (std::isnan(error)) return std::string("-");
     return error < GpsDesign::max_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
-                                        : fmt::format("undetermined; requires {}", manoeuvre);
+                                        : fmt::format("undetermined (requires {})", manoeuvre);
   };
-  say("\nexpected standard errors of delta-p by GPS ({}), from the manoeuvres alone\n",
+  say("delta-p by GPS ({}), expected standard errors: level {}, change with airspeed {}{}\n",
       gps.by_wind && gps.by_height ? "wind and height"
       : gps.by_wind                ? "wind"
-                                   : "height");
-  say("  the level                     {}\n", text(gps.level, "circles or reverse headings"));
-  say("  its change with the airspeed  {}\n", text(gps.slope, "a speed run"));
-  say("  its change with the attack    {}\n", text(gps.attack, "a pitch manoeuvre"));
+                                   : "height",
+      text(gps.level, "circles or reverse headings"), text(gps.slope, "a speed run"),
+      std::isnan(gps.attack) ? "" : ", change with attack " + text(gps.attack, "a pitch manoeuvre"));
 }
 
 /// Pressures, numbers of roles and models, problems and missing inputs.
 void print_short(const Inspection& flight) {
   constexpr std::size_t max_rows = 3;
+  std::vector<std::string> pressures;
   for (const InspectedRole& role : flight.roles) {
     if (role.role == "static_pressure" || role.role == "dynamic_pressure")
-      say("{}: {}{}{}\n", role.role, role.variable,
-          role.others.empty() ? "" : "; alternatives: ", fmt::join(role.others, " "));
+      pressures.push_back(role.others.empty() ? fmt::format("{} {}", role.role, role.variable)
+                                              : fmt::format("{} {} (or {})", role.role, role.variable,
+                                                            fmt::join(role.others, " ")));
   }
+  if (!pressures.empty()) say("{}\n", fmt::join(pressures, ", "));
   std::vector<std::string> missing;
   for (const MissingRole& role : flight.missing) missing.push_back(role.role);
   say("{} roles assigned; missing: {}\n", flight.roles.size(),
       missing.empty() ? "no role" : fmt::format("{}", fmt::join(missing, ", ")));
-  for (std::size_t i = 0; i < std::min(flight.problems.size(), max_rows); ++i) print(flight.problems[i]);
-  if (flight.problems.size() > max_rows)
-    say("{} more problems: add --verbose\n", flight.problems.size() - max_rows);
+  std::size_t shown = 0;
+  for (std::size_t i = 0; i < flight.problems.size() && shown < max_rows; ++i) {
+    const Problem& problem = flight.problems[i];
+    const auto is_like = [&problem](const Problem& other) {
+      return other.variable == problem.variable && other.kind == problem.kind;
+    };
+    const auto here = flight.problems.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(flight.problems.begin(), here, is_like)) continue;
+    print(problem);
+    ++shown;
+  }
+  if (flight.problems.size() > shown)
+    say("{} more problems: add --verbose\n", flight.problems.size() - shown);
   const std::string models = applicable_text(flight.laws);
   say("models for this flight: {}\n", models.empty() ? "no published one" : models);
   if (models.empty() && flight.by_gps && !flight.by_gps->determines_level()) print_by_gps(*flight.by_gps);
@@ -436,7 +447,9 @@ std::function<void()> add_inspect(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "inspect",
       "Show the content of a flight: aircraft, rates, roles of its variables, missing inputs, manoeuvres");
-  command->add_option("FLIGHT.nc", options->flights, "flights, netCDF files")->required()->type_name("");
+  command->add_option("FLIGHT.nc", options->flights, "flights, netCDF or ICARTT files")
+      ->required()
+      ->type_name("");
   command
       ->add_option("--write-model", options->model,
                    "write a model of the first flight to FILE.toml, with its roles and terms for a refit")

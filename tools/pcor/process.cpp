@@ -94,11 +94,12 @@ void print_flags(const Flags& flagged) {
 }
 
 /// Next step for the first processed flight; empty if no flight was processed.
-std::string next_step(const std::vector<ProcessedFlight>& flights) {
+std::string next_step(const std::vector<ProcessedFlight>& flights, const std::string& report) {
   const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
     return each.state == FlightState::processed;
   });
   if (done == flights.end()) return "";
+  if (!report.empty()) return "To look at the result, open in a browser: " + shell_path(report);
   return fmt::format("To look at the result: ncdump -v {} {} | less",
                      shell_quote(done->summary.outputs.front()), shell_path(done->output.string()));
 }
@@ -319,7 +320,7 @@ void run(const ProcessArguments& options) {
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (!options.common.report.empty() && !none) {
     write_report_of_run(process_report(flights, process.process.suffix),
-                        {{options.model + options.models}, options.inputs, {}, next_step(flights)},
+                        {{options.model + options.models}, options.inputs, {}, next_step(flights, "")},
                         options.common);
   }
   if (many)
@@ -340,7 +341,7 @@ void run(const ProcessArguments& options) {
     say("{} is up to date for this version, flight, model and options\n", first.output.string());
   }
   say_written({options.common.report, options.common.json});
-  if (const std::string next = next_step(flights); !next.empty()) say("{}\n", next);
+  if (const std::string next = next_step(flights, options.common.report); !next.empty()) say("{}\n", next);
 }
 
 }  // namespace
@@ -349,7 +350,9 @@ std::function<void()> add_process(CLI::App& program) {
   auto options = std::make_shared<ProcessArguments>();
   CLI::App* command =
       program.add_subcommand("process", "Correct flights: run every sample through the real-time loop");
-  command->add_option("FLIGHT.nc", options->inputs, "the flights, netCDF files")->required()->type_name("");
+  command->add_option("FLIGHT.nc", options->inputs, "the flights, netCDF or ICARTT files")
+      ->required()
+      ->type_name("");
   CLI::Option* const model =
       command->add_option("-m,--model", options->model, "the model of the pressure system")
           ->type_name("MODEL.toml");

@@ -129,7 +129,7 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
       ++omitted;
       continue;
     }
-    const std::string error = !p.fitted                      ? "held"
+    const std::string error = !p.fitted                      ? "fixed"
                               : p.at_bound                   ? "bound"
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
@@ -157,13 +157,12 @@ std::string outliers_text(const RefitResult& result, const RefitArguments& optio
   return fmt::format("{} outliers{}", result.outliers, use);
 }
 
-/// The residual, warnings and the fitted coefficients.
+/// The residual and the fitted coefficients.
 void print_short(const RefitResult& result, const RefitArguments& options) {
   constexpr std::size_t max_rows = 6;
   say("rms {:.3f} hPa{}; {} {:.3f} hPa; {} samples, {}\n", result.rms, before_text(result.rms_before),
       result.noise_label(), result.noise_rms, result.samples, outliers_text(result, options));
   print_fit_summary(result);
-  for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   print_coefficients(result, max_rows);
   for (const FlightFit& flight : result.flights) {
     if (flight.holdout)
@@ -176,7 +175,6 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
                   const RefitArguments& options) {
   print_fit_summary(result);
   print_references(references);
-  for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
   say("{}\n", result.estimator);
   say("reference: {}\n", result.reference_text);
   say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
@@ -216,21 +214,18 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
 }
 
 std::string next_step(const RefitArguments& options) {
-  if (options.reference_output.empty()) {
-    return fmt::format("To see where the errors are largest: {} compare {} -m {} -m {}", program(),
-                       advised_command_line(options.comparison), model_argument(options.model),
-                       shell_path(options.output));
-  }
   ComparisonOptions fitted = options.comparison;
-  const std::string first = fitted.references.front();
-  const std::string before = first.substr(first.find(':'));
-  for (std::string& reference : fitted.references) {
-    const std::size_t colon = reference.find(':');
-    if (colon != std::string::npos && reference.substr(colon) == before)
-      reference = reference.substr(0, colon) + ":" + options.reference_output;
+  if (!options.reference_output.empty()) {
+    const std::string first = fitted.references.front();
+    const std::string before = first.substr(first.find(':'));
+    for (std::string& reference : fitted.references) {
+      const std::size_t colon = reference.find(':');
+      if (colon != std::string::npos && reference.substr(colon) == before)
+        reference = reference.substr(0, colon) + ":" + options.reference_output;
+    }
   }
-  return fmt::format("To see where the errors are largest: {} compare {} -m {}", program(),
-                     advised_command_line(fitted), shell_path(options.output));
+  return fmt::format("To find missing effects: {} diagnose {} -m {}", program(), advised_command_line(fitted),
+                     shell_path(options.output));
 }
 
 /// Comparison of the model before and after the fit, for the report.
@@ -340,12 +335,11 @@ void run(const RefitArguments& options) {
   if (!is_speaker()) return;
   OutputTransaction together;
   if (comparison) {
-    write_report_of_run(refit_report(result, *comparison),
-                        {{options.model, options.output},
-                         options.comparison.flights,
-                         options.fit.holdout,
-                         is_refused ? "" : next_step(options)},
-                        options.common);
+    write_report_of_run(
+        refit_report(result, *comparison),
+        {is_refused ? std::vector{options.model} : std::vector{options.model, options.output},
+         options.comparison.flights, options.fit.holdout, is_refused ? "" : next_step(options)},
+        options.common);
   }
   if (table) table->write(options.table);
   json.write(result);
@@ -357,7 +351,7 @@ void run(const RefitArguments& options) {
       print_result(result, references, options);
     else
       print_short(result, options);
-    say_notes(result.notes);
+    say_notes(with_warnings(result.warnings, result.notes), std::max<std::size_t>(3, result.warnings.size()));
     say_written({options.common.report, options.table, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, options.force, result.model);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -113,7 +114,6 @@ void print_in_full(const TemperatureResult& result) {
 }
 
 void print(const TemperatureResult& result) {
-  for (const std::string& warning : result.warnings) say("Warning: {}.\n", warning);
   if (is_verbose()) {
     print_in_full(result);
   } else {
@@ -122,7 +122,7 @@ void print(const TemperatureResult& result) {
       if (!flight.excluded.empty()) say("{}: skipped: {}\n", flight.flight, flight.excluded);
     }
   }
-  say_notes(result.notes);
+  say_notes(with_warnings(result.warnings, result.notes), std::max<std::size_t>(3, result.warnings.size()));
 }
 
 void print(const IterativeCalibration& result) {
@@ -149,11 +149,14 @@ std::vector<std::string> used_flights(const TemperatureResult& result, const Tem
 }
 
 std::string next_step(const TemperatureResult& result, const TemperatureArguments& options) {
-  if (!result.worse.empty())
-    return "Flights that climb and descend by 3 km and more, there and back along the same track, determine "
-           "the correction better";
-  return "To apply it: " + process_command(used_flights(result, options), result.model, options.output,
-                                           options.comparison.timestamp_alignment);
+  const auto process = [&](const std::string& model) {
+    return process_command(used_flights(result, options), result.model, model,
+                           options.comparison.timestamp_alignment);
+  };
+  if (result.worse.empty()) return "To apply it: " + process(options.output);
+  return "Flights that climb and descend by 3 km and more, there and back along the same track, determine "
+         "the correction better. To apply the input model: " +
+         process(options.model);
 }
 
 void run(const TemperatureArguments& options) {
@@ -187,10 +190,12 @@ void run(const TemperatureArguments& options) {
   const bool is_refused = !result.worse.empty() && !with.dry_air;
   OutputTransaction together;
   if (!options.common.report.empty())
-    write_report_of_run(
-        temperature_report(result),
-        {{options.model, options.output}, options.comparison.flights, {}, next_step(result, options)},
-        options.common);
+    write_report_of_run(temperature_report(result),
+                        {is_refused ? std::vector{options.model} : std::vector{options.model, options.output},
+                         options.comparison.flights,
+                         {},
+                         next_step(result, options)},
+                        options.common);
   json.write(in_turn);
   if (!is_refused) {
     refuse_worse(result.worse, with.dry_air, result.model);

@@ -95,6 +95,8 @@ void say_everything() { with_details = true; }
 
 std::string folded(std::string_view line, std::size_t width) {
   if (bytes_of(line, width) == line.size()) return std::string(line);
+  // The pieces of a command would run alone if they are pasted.
+  if (line.rfind("  " + program() + " ", 0) == 0) return std::string(line);
   const std::size_t command = line.find(": " + program() + " ");
   std::string_view rest = line.substr(0, command == none ? none : command + 1);
   const std::size_t indent = hanging_indent(line, width);
@@ -120,14 +122,15 @@ bool wants_colour() {
          std::string_view(terminal) != "dumb";
 }
 
-/// Label of a note ("note 1", "Note", "Warning") bold, and verdict in a row of a table in colour.
+/// Label of a note ("note 2", "warning 1", "Note", "Warning") bold, and verdict in a row of a table in
+/// colour.
 std::string coloured(std::string line) {
   constexpr std::string_view plain = "\033[0m";
   const auto paint = [&](std::size_t at, std::size_t length, std::string_view colour) {
     line.insert(at + length, plain);
     line.insert(at, colour);
   };
-  for (const std::string_view label : {"note ", "Note:", "Warning:"}) {
+  for (const std::string_view label : {"note ", "warning ", "Note:", "Warning:"}) {
     if (line.rfind(label, 0) == 0) paint(0, std::min(line.find(':'), line.size()), "\033[1m");
   }
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> verdicts{
@@ -187,17 +190,26 @@ void say_notes(Notes notes, std::size_t max_notes) {
   bool is_cut = false;  // a note before
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i) {
     // A note begins with the fault or the action: complete clauses stay if the first one fits.
-    const std::string note = format_note(notes[i]);
+    const std::string& note = notes[i].text;
+    const char* const label = notes[i].severity == Severity::warning ? "warning" : "note";
     const bool is_short = bytes_of(note, max_width) == note.size();
     std::string_view line = note;
     if (!is_short) {
       const std::size_t clauses = note.rfind("; ", bytes_of(note, max_width));
       line = clauses == none ? take_line(line, max_width, false) : line.substr(0, clauses);
     }
-    say("note {}: {}{}\n", i + 1, line, is_short ? "." : is_cut ? " ..." : " ... (in full with --verbose)");
+    say("{} {}: {}{}\n", label, i + 1, line,
+        is_short ? "."
+        : is_cut ? " ..."
+                 : " ... (in full with --verbose)");
     is_cut = is_cut || !is_short;
   }
   if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
+}
+
+Notes with_warnings(const std::vector<std::string>& warnings, Notes notes) {
+  std::transform(warnings.begin(), warnings.end(), std::back_inserter(notes), warning_note);
+  return notes;
 }
 
 void tell_choices(const Notes& choices, bool quiet) {

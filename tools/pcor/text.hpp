@@ -47,6 +47,9 @@ void say_everything();
 /// full if `is_verbose`.
 void say_notes(Notes notes, std::size_t max_notes = 3);
 
+/// Notes with warnings about the same result.
+Notes with_warnings(const std::vector<std::string>& warnings, Notes notes);
+
 /// Prints automatic choices on standard error, unless `quiet`, a sentence each, and stores them for
 /// `choices_of_this_run`.
 void tell_choices(const Notes& choices, bool quiet);
