@@ -390,6 +390,19 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
 
 double ModelComparison::noise_ratio() const { return is_by_gps() ? nan : all.rms_over_noise(); }
 
+std::vector<std::string> model_labels(const Comparison& comparison) {
+  constexpr std::size_t max_name = 32;
+  const std::vector<ModelComparison>& models = comparison.models;
+  const bool are_numbered =
+      models.size() > 1 && std::any_of(models.begin(), models.end(), [](const ModelComparison& model) {
+        return model.name.size() > max_name;
+      });
+  std::vector<std::string> labels;
+  for (const ModelComparison& model : models)
+    labels.push_back(are_numbered ? fmt::format("model {}", labels.size() + 1) : model.name);
+  return labels;
+}
+
 const ModelComparison& worst_by_noise(const Comparison& comparison, const ModelComparison& first) {
   const ModelComparison* worst = &first;
   for (const Comparison& further : comparison.further) {

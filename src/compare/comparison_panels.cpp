@@ -33,23 +33,12 @@ std::vector<std::size_t> used(const FlightResiduals& flight) {
   return records;
 }
 
-bool has_long_name(const ModelComparison& model) {
-  constexpr std::size_t max_name = 32;
-  return model.name.size() > max_name;
-}
-
 }  // namespace
 
-bool ComparisonPanels::are_numbered() const {
-  const std::vector<ModelComparison>& models = comparison_.models;
-  return models.size() > 1 && std::any_of(models.begin(), models.end(), has_long_name);
-}
-
 std::string ComparisonPanels::label_of_model(const ModelComparison& model) const {
-  if (!are_numbered()) return model.name;
   const auto found = std::find_if(comparison_.models.begin(), comparison_.models.end(),
                                   [&model](const ModelComparison& each) { return each.name == model.name; });
-  return fmt::format("model {}", found - comparison_.models.begin() + 1);
+  return labels_[static_cast<std::size_t>(found - comparison_.models.begin())];
 }
 
 std::string ComparisonPanels::title_of(const std::string& what, const ModelComparison& model) const {
@@ -169,7 +158,7 @@ void ComparisonPanels::add_pairs() {
 }
 
 void ComparisonPanels::add_model_table() {
-  if (!are_numbered()) return;
+  if (labels_.front() == comparison_.models.front().name) return;
   ReportTable table{"Models", "", {"", "model", "bias, hPa", "rms, hPa", "noise, hPa"}};
   for (const ModelComparison& model : comparison_.models) {
     table.rows.push_back({label_of_model(model), model.name, fmt::format("{:+.3f}", model.all.bias),

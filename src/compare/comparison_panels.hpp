@@ -30,14 +30,13 @@ class ComparisonPanels {
   template <class Series>
   void add(const std::string& name, const std::string& title, const Series& series);
 
-  /// Whether several models, one with a long name, are called "model 1", "model 2", as the command prints.
-  bool are_numbered() const;
   /// A title with the label of the model, if there are several.
   std::string title_of(const std::string& what, const ModelComparison& model) const;
   /// The names of numbered models.
   void add_model_table();
 
   const Comparison& comparison_;
+  const std::vector<std::string> labels_{model_labels(comparison_)};
   FlightReport samples_;
   std::vector<std::string> residuals_;
   std::vector<std::string> variables_;

@@ -92,16 +92,11 @@ void print_parts(const ShownParts& parts, std::size_t more) {
 /// First cells of the rows of the models: "all" for a single model; numbers if a name is too long.
 class RowNames {
  public:
-  explicit RowNames(const std::vector<ComparedModel>& models) {
-    const bool is_single = models.size() == 1;
-    are_long_ = !is_single && std::any_of(models.begin(), models.end(), [](const ComparedModel& model) {
-      return model.name.size() > name_width;
-    });
-    for (std::size_t m = 0; m < models.size(); ++m) {
-      rows_.emplace_back(models[m].name, is_single   ? "all"
-                                         : are_long_ ? fmt::format("model {}", m + 1)
-                                                     : models[m].name);
-    }
+  explicit RowNames(const Comparison& comparison) {
+    const std::vector<std::string> labels = model_labels(comparison);
+    for (std::size_t m = 0; m < labels.size(); ++m)
+      rows_.emplace_back(comparison.models[m].name, labels.size() == 1 ? "all" : labels[m]);
+    are_long_ = labels.size() > 1 && labels.front() != comparison.models.front().name;
   }
 
   std::string of(const ModelComparison& model) const {
@@ -224,7 +219,7 @@ void print_in_full(const Comparison& comparison, const ChosenReferences& referen
 void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
            const ChosenReferences& references, const CompareArguments& options) {
   const Comparison& comparison = result.comparison;
-  const RowNames rows(models);
+  const RowNames rows(comparison);
   if (is_verbose())
     print_in_full(comparison, references, rows);
   else

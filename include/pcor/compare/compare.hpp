@@ -169,6 +169,10 @@ void describe(const Comparison& self, Field& field) {
 /// others, because their residuals contain gusts. An unknown ratio is the smallest.
 const ModelComparison& worst_by_noise(const Comparison& comparison, const ModelComparison& first);
 
+/// Labels of the models in tables and pictures, in their order: the names, or, if one of several has more
+/// than 32 characters, "model 1", "model 2".
+std::vector<std::string> model_labels(const Comparison& comparison);
+
 struct CompareOptions {
   MaskOptions mask;
   /// Maximum number of flights whose records are kept; statistics use all flights. If there are more, the
