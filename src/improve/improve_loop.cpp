@@ -19,8 +19,6 @@
 namespace pcor::internal {
 namespace {
 
-// Minimum decrease of the held-out rms by an effect that is not known to be the cause.
-constexpr double unnamed_limit = 0.99;
 // Tolerated growth of the fit's rms, because the fit weighs samples by their noise and ignores outliers.
 constexpr double fit_limit = 1.005;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
@@ -269,38 +267,48 @@ class ForwardSelection {
   void add_surface() {
     if (!loop_.offer_surface || !surface_may_describe(diagnosis())) return;
     const TrialModel before{result_.model, delivered_alike_};
-    std::optional<SurfaceOffer> offer;
-    try {
-      offer = loop_.offer_surface(before);
-    } catch (const Error& error) {  // keeps the model without a surface
-      if (error.code() == Error::Code::file) throw;
-      result_.why_stopped += fmt::format("; a surface was not tested: {}", error.what());
-    }
-    if (!offer) return;
     const EffectInfo& surface = surface_info.front();
     const std::string id(surface.id);
-    const TrialComparison& out = offer->out_of_fit;
-    const std::string figures = fmt::format("rms {} with it, {} without it on {}", shown(out.rms_after),
-                                            shown(out.rms_before), offer->held_out);
-    if (!out.is_better() || !(out.rms_after <= unnamed_limit * out.rms_before)) {
-      result_.why_stopped += fmt::format("; rejected: {}, {}", id, figures);
+    std::optional<SurfaceOffer> offer;
+    std::string figures;
+    RefitResult fit;
+    try {
+      offer = loop_.offer_surface(before);
+      if (!offer) return;
+      const TrialComparison& compared = offer->compared;
+      figures = fmt::format("rms {} with it, {} without it on {}", shown(compared.rms_after),
+                            shown(compared.rms_before), offer->compared_on);
+      if (!compared.is_better() || !(compared.rms_after <= unnamed_limit * compared.rms_before)) {
+        result_.why_stopped += fmt::format("; rejected: {}, {}; it must reduce the rms by {:.0f} %", id,
+                                           figures, 100.0 * (1.0 - unnamed_limit));
+        return;
+      }
+      fit = loop_.refit(offer->model);
+    } catch (const Error& error) {  // keeps the model without a surface
+      if (error.code() == Error::Code::file) throw;
+      result_.why_stopped += fmt::format("; a surface was not fitted: {}", error.what());
       return;
     }
     ImproveStep step;
     step.added = step.delivered = id;
     step.title = std::string(surface.title);
-    measure(step, offer->fit, before.alike);
+    measure(step, fit, before.alike);
     // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
-      step.rms_holdout = result_.steps.back().rms_holdout * out.rms_after / out.rms_before;
+      step.rms_holdout =
+          result_.steps.back().rms_holdout * offer->compared.rms_after / offer->compared.rms_before;
+    double degrees = 0.0;
+    for (const SurfaceFit& each : fit.surfaces) {
+      if (each.effect == id) degrees = each.degrees_of_freedom;
+    }
     step.learnt = fmt::format(
         "{}: {:.1f} degrees of freedom; {}, decrease of chi2 {:.0f} +- {:.0f}; the surface describes "
         "the residual and identifies no cause",
-        id, offer->degrees_of_freedom, figures, out.gain, out.gain_error);
+        id, degrees, figures, offer->compared.gain, offer->compared.gain_error);
     // The uncertainty of the choice among rivals stays part of the stated error.
-    add_rival_error(offer->fit.model);
-    result_.model = offer->fit.model;
-    take(std::move(step), std::move(offer->fit), {}, before.alike);
+    add_rival_error(fit.model);
+    result_.model = fit.model;
+    take(std::move(step), std::move(fit), {}, before.alike);
   }
 
   /// Compares the delivered model with the input model.

@@ -59,6 +59,9 @@ std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDef
 /// Standard errors of a gain that a paired test requires: 95 %, one-sided, as a gain is better or is not.
 inline constexpr double sure_gain = 1.645;
 
+/// Maximum ratio of the held-out rms with an effect to that without it, if it is not known to be the cause.
+inline constexpr double unnamed_limit = 0.99;
+
 /// Residuals of two models on the same samples.
 struct TrialComparison {
   double rms_before = 0.0;  ///< first reference, hPa; NaN if there are no samples

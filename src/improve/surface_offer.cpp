@@ -1,6 +1,7 @@
 #include "improve/surface_offer.hpp"
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include <pcor/base/error.hpp>
@@ -29,12 +30,13 @@ Exclusion block_of(const TrialFlight& flight, std::size_t block) {
 }
 
 /// The residuals without and with the surface on five blocks, each with coefficients of the other four.
+/// @param outline the samples of all blocks
+/// @param surfaces the priors in a fit to all blocks, where the search for those of each block starts
 TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
-                              const RefitOptions& options) {
-  const std::vector<TrialFlight> outline = try_models(flights, {models[0], models[1]}, references, options);
+                              const RefitOptions& options, const std::vector<TrialFlight>& outline,
+                              std::vector<SurfaceRoughness> surfaces) {
   std::vector<TrialModel> trials;
-  // Priors of the block before, where the search for those of the next block starts.
-  std::array<std::vector<SurfaceRoughness>, 2> surfaces;
+  std::array<std::vector<SurfaceRoughness>, 2> priors{{{}, std::move(surfaces)}};
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
     without_block.alike = models[0].alike;
@@ -44,7 +46,7 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
         without_block.mask.intervals->exclude.push_back(block_of(flight, block));
     }
     for (std::size_t k = 0; k < models.size(); ++k) {
-      trials.push_back({fitted_coefficients(flights, models[k].file, references, without_block, surfaces[k]),
+      trials.push_back({fitted_coefficients(flights, models[k].file, references, without_block, priors[k]),
                         models[k].alike});
     }
   }
@@ -86,21 +88,23 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
     return std::nullopt;
   }
   SurfaceOffer offer;
+  offer.model = models[1];
   RefitOptions of_all = options;
   of_all.alike = model.alike;
-  offer.fit = refit(flights, models[1].file, references, of_all);
-  for (const SurfaceFit& surface : offer.fit.surfaces) {
-    if (surface.effect == id) offer.degrees_of_freedom = surface.degrees_of_freedom;
-  }
+  std::vector<SurfaceRoughness> surfaces;
+  TrialModel fitted = models[1];
+  fitted.file = fitted_coefficients(flights, models[1].file, references, of_all, surfaces);
+  const std::vector<TrialFlight> tried = try_models(flights, {model, fitted}, references, options);
   if (!options.holdout.empty() || options.training_share < 1.0) {
-    offer.held_out = "held-out samples";
-    models[1].file = offer.fit.model;
-    offer.out_of_fit =
-        comparison_of(try_models(flights, {models[0], models[1]}, references, options), 0, 1, true);
-  } else {
-    offer.held_out = "five held-out blocks with outliers";
-    offer.out_of_fit = out_of_blocks(flights, models, references, options);
+    offer.compared_on = "held-out samples";
+    offer.compared = comparison_of(tried, 0, 1, true);
+    return offer;
   }
+  offer.compared_on = "the fitted samples";
+  offer.compared = comparison_of(tried, 0, 1, false);
+  if (!(offer.compared.rms_after <= unnamed_limit * offer.compared.rms_before)) return offer;
+  offer.compared_on = "five held-out blocks with outliers";
+  offer.compared = out_of_blocks(flights, models, references, options, tried, std::move(surfaces));
   return offer;
 }
 

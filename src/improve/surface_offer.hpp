@@ -7,17 +7,17 @@
 
 namespace pcor::internal {
 
-/// A model with the first of `surface_info`, and its residuals on samples outside its fit.
+/// A model with the first of `surface_info`, not yet fitted to all samples, and its residuals.
 struct SurfaceOffer {
-  double degrees_of_freedom = 0.0;  ///< number of its coefficients that the flights determine
-  RefitResult fit{};
-  TrialComparison out_of_fit{};  ///< comparison without and with the surface
-  std::string held_out{};        ///< description of these samples
+  TrialModel model{};
+  TrialComparison compared{};  ///< comparison without and with the surface
+  std::string compared_on{};   ///< description of the samples
 };
 
-/// Fits a model with a surface of attack and Mach number, and compares it with the model without it on
-/// held-out flights or parts; if nothing is held out, on five contiguous blocks of the flights, each with
-/// fits to the other four. Empty if the flights do not record the axes.
+/// Compares a model with and without a surface of attack and Mach number on held-out flights or parts; if
+/// nothing is held out, on five contiguous blocks of the flights, each with fits to the other four, or, if
+/// the rms of the fitted samples decreases too little, on these. Empty if the flights do not record the axes.
+/// @param model with fitted coefficients
 std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialModel& model,
                                           const References& references, const RefitOptions& options);
 

@@ -294,20 +294,32 @@ TEST_F(Improve, AppliesNoRivalIfAnotherMakesItHarmful) {
   EXPECT_NEAR(improvement.steps[1].rival_error, std::sqrt(0.75 * 0.64 + 0.25 * 0.36), 1e-9);
 }
 
-/// A surface that reduces the residual outside its fit and belongs to a fit of the given rms, hPa.
-SurfaceOffer helpful_surface(const TrialModel& model, double rms) {
+/// A surface that reduces the residual outside its fit.
+SurfaceOffer helpful_surface(const TrialModel& model) {
   SurfaceOffer offer;
-  offer.fit.model = model.file;
-  offer.fit.model.law.rms_hpa = rms;
-  offer.out_of_fit.rms_before = 1.0;
-  offer.out_of_fit.rms_after = 0.5;
-  offer.out_of_fit.gain = 100.0;
+  offer.model = model;
+  offer.compared.rms_before = 1.0;
+  offer.compared.rms_after = 0.5;
+  offer.compared.gain = 100.0;
   return offer;
+}
+
+TEST_F(Improve, SurfaceThatCannotBeFittedIsNotAdded) {
+  loop_.offer_surface = helpful_surface;
+  std::size_t fits = 0;
+  loop_.refit = [&](const TrialModel& model) {
+    if (fits++ > 0) throw Error(Error::Code::fit, "not determined");
+    return fitted(model.file);
+  };
+  const Improvement improvement = run({diagnosis(Verdict::unexplained)});
+  EXPECT_EQ(improvement.steps.size(), 1U);
+  EXPECT_EQ(improvement.model.model.effects.size(), 2U);
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("not determined"));
 }
 
 // A drift of either system cannot be added, and a surface of the attack would imitate it on these flights.
 TEST_F(Improve, SurfaceDoesNotReplaceALargerEffectOfAnotherKind) {
-  loop_.offer_surface = [](const TrialModel& model) { return helpful_surface(model, 0.5); };
+  loop_.offer_surface = helpful_surface;
   for (const bool attack_is_larger : {false, true}) {
     Diagnosis both = diagnosis(Verdict::identified, {"time-drift", "static-alpha-quad"});
     both.findings[0].of_reference = both.findings[1].of_reference = true;
@@ -328,8 +340,7 @@ TEST_F(Improve, RivalsThatCannotBeFittedTogetherAreNotApplied) {
     return fitted(trial.file);
   };
   for (const bool is_surface_offered : {false, true}) {
-    if (is_surface_offered)
-      loop_.offer_surface = [](const TrialModel& model) { return helpful_surface(model, 0.5); };
+    if (is_surface_offered) loop_.offer_surface = helpful_surface;
     const Improvement improvement =
         run({two_rivals("static-lag", "total-lag", 0.25), two_rivals("static-mach", "static-mach2", 0.25),
              diagnosis(Verdict::unexplained)},
@@ -465,8 +476,8 @@ TEST_F(Improve, DegradedModelIsReportedAsWorse) {
 TEST_F(Improve, GivenModelWithoutResidualIsComparedByItsRefit) {
   given_rms_ = std::nan("");
   EXPECT_EQ(run({diagnosis(Verdict::silent)}).worse, "");
-  loop_.offer_surface = [](const TrialModel& model) { return helpful_surface(model, 1.5); };
-  const Improvement improvement = run({diagnosis(Verdict::unexplained)});
+  loop_.offer_surface = helpful_surface;
+  const Improvement improvement = run({diagnosis(Verdict::unexplained)}, {1.0, 1.5});
   EXPECT_TRUE(std::isnan(improvement.given_rms_holdout));
   EXPECT_THAT(improvement.worse, HasSubstr("1.5000"));
 }
