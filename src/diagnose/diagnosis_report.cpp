@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,22 @@ std::string either(const Finding& finding, const std::string& rival) {
     if (!cause.empty()) names += fmt::format(", or {} is the cause", cause);
   }
   return fmt::format("An effect is missing, {}: these flights cannot distinguish them", names);
+}
+
+/// Causes outside the catalogue that may replace findings: ", or the atmosphere is the cause of pitot-angle".
+std::string other_causes(const Diagnosis& diagnosis) {
+  std::map<std::string, std::vector<std::string>> replaced;
+  for (const Finding& finding : diagnosis.findings) {
+    for (const std::string& cause : {finding.rival, diagnosis.rival}) {
+      if (!cause.empty()) replaced[cause].push_back(finding.id());
+    }
+  }
+  std::string text;
+  for (const auto& [cause, ids] : replaced) {
+    const bool are_all = ids.size() == diagnosis.findings.size();
+    text += fmt::format(", or {} is the cause{}", cause, are_all ? "" : " of " + join_list(ids));
+  }
+  return text;
 }
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
@@ -191,7 +208,8 @@ std::string verdict_text(const Diagnosis& diagnosis) {
       return effects;
     case Verdict::ambiguous:
       return ids.size() == 1 ? either(diagnosis.findings.front(), diagnosis.rival)
-                             : effects + "; these flights cannot separate all of them from others";
+                             : fmt::format("{}{}; these flights cannot distinguish all possible causes",
+                                           effects, other_causes(diagnosis));
     case Verdict::partial:
       return effects + "; the remaining structure is not explained by any effect";
     case Verdict::unexplained:
@@ -285,14 +303,13 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
 }
 
 std::string kind_text(const Finding& finding) {
-  constexpr double far = 5.0;  // usual sizes
   std::string text = fmt::format("place: {}", fmt::join(finding.components, " or "));
   if (!finding.family.empty()) text = fmt::format("family: {}; {}", finding.family, text);
   if (!finding.shape.empty()) text += "; shape: " + finding.shape;
-  if (finding.times_usual > far)
+  if (is_unusually_large(finding))
     text += fmt::format(
-        "; {:.2g} times its usual size, so look first for a wrong entry in the model, or for another cause",
-        finding.times_usual);
+        "; {} times its usual size, so look first for a wrong entry in the model, or for another cause",
+        ratio_text(finding.times_usual));
   if (finding.of_reference) text += "; do not change the model for it";
   return text;
 }

@@ -11,6 +11,7 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include "campaign/gps_rows.hpp"
+#include "diagnose/finding_page.hpp"
 #include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/separation.hpp"
@@ -556,14 +557,29 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
 
 void doubt_by_size(Diagnosis& diagnosis) {
   for (Finding& finding : diagnosis.findings) {
-    if (!(finding.times_usual > 2.0 * widest_prior) || !finding.rival.empty() ||
-        predicts_held_out_parts(finding))
+    if (!is_of_impossible_size(finding) || !finding.rival.empty() || predicts_held_out_parts(finding))
       continue;
     finding.rival = "an unknown error";
     diagnosis.notes.push_back(warning_note(fmt::format(
-        "look for a wrong entry or unit in the model or another cause first: {} is {:.2g} times its "
-        "usual size; decrease of chi2 of held-out parts {:.0f} +- {:.0f}, not significant",
-        finding.id(), finding.times_usual, finding.gain, finding.gain_error)));
+        "look for a wrong entry or unit in the model or another cause first: {} is {} times its usual size; "
+        "decrease of chi2 of held-out parts {:.0f} +- {:.0f}, not significant",
+        finding.id(), report::ratio_text(finding.times_usual), finding.gain, finding.gain_error)));
+  }
+}
+
+void doubt_by_atmosphere(Diagnosis& diagnosis) {
+  for (Finding& finding : diagnosis.findings) {
+    const bool is_impossible = is_of_impossible_size(finding);
+    if (predicts_held_out_parts(finding) && !is_impossible) continue;
+    finding.rival = "the atmosphere";
+    diagnosis.notes.push_back(warning_note(fmt::format(
+        "confirm {} with a laser or a second system: variations of the atmosphere may be the cause{}; "
+        "decrease of chi2 of held-out parts {:.0f} +- {:.0f}",
+        finding.id(),
+        is_impossible
+            ? fmt::format("; its size is {} times the usual one", report::ratio_text(finding.times_usual))
+            : "",
+        finding.gain, finding.gain_error)));
   }
 }
 

@@ -40,8 +40,16 @@ inline bool predicts_held_out_parts(const Finding& finding) {
   return finding.gain > 3.0 * finding.gain_error;
 }
 
-/// An effect two standard deviations beyond the widest prior of its size may be the image of another error,
-/// unless it predicts held-out parts: "an unknown error" becomes its rival, with a note.
+/// Whether a finding is beyond two standard deviations of the widest prior of its size: 20 usual sizes.
+inline bool is_of_impossible_size(const Finding& finding) { return finding.times_usual > 2.0 * widest_prior; }
+
+/// An effect of an impossible size may be the image of another error, unless it predicts held-out parts: "an
+/// unknown error" becomes its rival, with a note.
 void doubt_by_size(Diagnosis& diagnosis);
+
+/// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
+/// clearly predict held-out parts may be one. So may a finding of an impossible size: a wind that depends on
+/// the place is the same in held-out parts.
+void doubt_by_atmosphere(Diagnosis& diagnosis);
 
 }  // namespace pcor::internal

@@ -438,19 +438,6 @@ std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vec
   return steps;
 }
 
-/// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
-/// clearly predict held-out parts may be one.
-void doubt_by_atmosphere(Diagnosis& diagnosis) {
-  for (Finding& finding : diagnosis.findings) {
-    if (predicts_held_out_parts(finding)) continue;
-    finding.rival = "the atmosphere";
-    diagnosis.notes.push_back(
-        warning_note(fmt::format("confirm {} with a laser or a second system: variations of the atmosphere "
-                                 "may be the cause; decrease of chi2 of held-out parts {:.0f} +- {:.0f}",
-                                 finding.id(), finding.gain, finding.gain_error)));
-  }
-}
-
 /// Withdraws the findings if a straight line in one variable of the files is more likely than they are.
 void overrule(Diagnosis& diagnosis, const std::string& variable) {
   for (const Finding& finding : diagnosis.findings) {

@@ -126,10 +126,13 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   loop.try_models = [&](const std::vector<TrialModel>& models) {
     return try_models(flights, models, ordered, options.refit);
   };
-  loop.offer_surface = [&](const TrialModel& trial) {
-    tell("testing a surface", trial.file);
-    return offer_surface(flights, trial, ordered, refit_options_for(trial));
-  };
+  // Wind and heights do not determine a surface.
+  if (!loop.is_by_gps) {
+    loop.offer_surface = [&](const TrialModel& trial) {
+      tell("testing a surface", trial.file);
+      return offer_surface(flights, trial, ordered, refit_options_for(trial));
+    };
+  }
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;
   loop.max_steps = options.max_steps;

@@ -30,7 +30,8 @@ struct OfferedEffect {
   ImproveStep step{};
   bool is_named = true;  ///< the effect or one of its rivals counts as the cause
   bool is_sure = false;  ///< significant on blocks of the fitted flights that were excluded from its estimate
-  std::string caution;   ///< end of the sentence in the summary
+  double impossible_size = 0.0;  ///< size in usual sizes, if it is impossible; 0 otherwise
+  std::string caution;           ///< end of the sentence in the summary
 };
 
 OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
@@ -38,6 +39,7 @@ OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
   candidate.choices.push_back({finding.effect, finding.held, finding.is_alike, finding.probability});
   candidate.step.title = finding.title;
   candidate.is_sure = finding.gain > sure_gain * finding.gain_error;
+  if (is_of_impossible_size(finding)) candidate.impossible_size = finding.times_usual;
   std::vector<std::string>& aliases = candidate.step.aliases;
   for (const Alias& alias : finding.aliases) {
     aliases.push_back(alias.effect);
@@ -96,6 +98,16 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
                     report::with_unit(fmt::format("{:.4g}{}", parameter.value, error), parameter.unit));
   }
   return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// Whether one fitted coefficient of an effect at least is more than three standard errors from its neutral
+/// value, at which a fit by GPS alone starts; a formula starts at an estimate and is neutral at 0.
+bool is_significant(const RefitResult& fit, const ModelEffect& effect) {
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(), [&](const FittedParameter& parameter) {
+    const double neutral = effect.is_formula() ? 0.0 : parameter.start;
+    return parameter.fitted && parameter.name.rfind(effect.id + ".", 0) == 0 &&
+           std::abs(parameter.value - neutral) > 3.0 * parameter.standard_error;
+  });
 }
 
 /// Rms of a - b over the samples in which both have a value.
@@ -448,6 +460,13 @@ class ForwardSelection {
     const std::string id = candidate.choices.front().effect.id;
     ImproveStep& step = candidate.step;
     step.added = step.delivered = id;
+    // The prior of a fit by GPS alone would make the effect small for any cause.
+    if (loop_.is_by_gps && candidate.impossible_size > 0.0) {
+      return fmt::format(
+          "rejected: {}, its size is {} times the usual one: confirm it with a laser or a second system, "
+          "because the atmosphere is a more likely cause",
+          id, report::ratio_text(candidate.impossible_size));
+    }
     TrialModel model;
     RefitResult fit;
     try {
@@ -455,6 +474,11 @@ class ForwardSelection {
       fit = loop_.refit(model);
     } catch (const Error& error) {
       return fmt::format("rejected: {}, not fitted: {}", id, error.what());
+    }
+    // If held-out samples are compared by height, an error of the dynamic pressure hardly changes their rms.
+    if (loop_.is_by_gps && !is_significant(fit, candidate.choices.front().effect)) {
+      return fmt::format("rejected: {}, {}; by GPS alone a coefficient must exceed three standard errors", id,
+                         coefficients_of(fit, id));
     }
     const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
     const TrialComparison fitted = comparison_of(tried, 0, 1, false);

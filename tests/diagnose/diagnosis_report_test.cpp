@@ -290,9 +290,15 @@ TEST(DiagnosisReport, EachFindingHasAPageOfText) {
 TEST(DiagnosisReport, NamesIndistinguishableEffects) {
   Diagnosis diagnosis = partial();
   diagnosis.verdict = Verdict::ambiguous;
-  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
-            "Effects are missing: static-beta-odd and static-lag; these flights cannot separate all of them "
-            "from others");
+  EXPECT_EQ(
+      diagnosis_report(diagnosis, model()).title,
+      "Effects are missing: static-beta-odd and static-lag; these flights cannot distinguish all possible "
+      "causes");
+  diagnosis.findings[1].rival = "the atmosphere";
+  EXPECT_THAT(verdict_text(diagnosis), HasSubstr(", or the atmosphere is the cause of static-lag; "));
+  diagnosis.findings[0].rival = "the atmosphere";
+  EXPECT_THAT(verdict_text(diagnosis), HasSubstr(", or the atmosphere is the cause; "));
+  diagnosis.findings[0].rival.clear();
   diagnosis.findings.resize(1);
   EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
             "An effect is missing, static-beta-odd or lams-azimuth: these flights cannot distinguish them");

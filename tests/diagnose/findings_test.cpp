@@ -22,6 +22,22 @@ TEST(DoubtBySize, EffectOfImpossibleSizeHasAnUnknownErrorAsRival) {
   }
 }
 
+// A wind that depends on the place is the same in held-out parts.
+TEST(DoubtByAtmosphere, EffectOfImpossibleSizeMayBeTheAtmosphereEvenIfItPredicts) {
+  for (const auto& [times_usual, gain, is_doubted] :
+       {std::tuple{19.0, 31.0, false}, {21.0, 31.0, true}, {1.0, 29.0, true}}) {
+    Diagnosis diagnosis;
+    Finding& finding = diagnosis.findings.emplace_back();
+    finding.effect.id = "qcf-gain";
+    finding.times_usual = times_usual;
+    finding.gain = gain;
+    finding.gain_error = 10.0;
+    pcor::internal::doubt_by_atmosphere(diagnosis);
+    EXPECT_EQ(diagnosis.findings[0].rival, is_doubted ? "the atmosphere" : "") << times_usual << ' ' << gain;
+    EXPECT_EQ(diagnosis.notes.empty(), !is_doubted);
+  }
+}
+
 TEST(DoubtBySize, KnownRivalIsKept) {
   Diagnosis diagnosis;
   diagnosis.findings.emplace_back().times_usual = 50.0;

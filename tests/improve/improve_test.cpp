@@ -8,6 +8,8 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "diagnose/rms.hpp"
@@ -180,6 +182,53 @@ TEST_F(Improve, AddsAnIdentifiedEffect) {
   EXPECT_EQ(improvement.steps[1].terms, 3U);
   EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::silent);
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
+}
+
+TEST_F(Improve, ByGpsAloneAnEffectMustDifferFromZeroByThreeErrors) {
+  loop_.has_holdout = false;
+  loop_.is_by_gps = true;
+  // Parameters of the fits are 0.25 with this standard error.
+  for (const auto& [error, is_added] : {std::pair(0.08, true), std::pair(0.09, false)}) {
+    loop_.refit = [this, error = error](const TrialModel& model) {
+      RefitResult fit = fitted(model.file);
+      for (FittedParameter& parameter : fit.parameters) parameter.standard_error = error;
+      return fit;
+    };
+    Diagnosis found = diagnosis(Verdict::identified, {"static-lag"});
+    Diagnosis silent = diagnosis(Verdict::silent);
+    found.residual_rms_held_out = 1.0;
+    silent.residual_rms_held_out = 0.9;
+    EXPECT_EQ(run({found, silent}).steps.size(), is_added ? 2U : 1U) << error;
+  }
+}
+
+// A formula has no neutral start: a fit by GPS alone starts it at the estimate of the diagnosis.
+TEST_F(Improve, ByGpsAloneAFormulaIsComparedWithZero) {
+  loop_.is_by_gps = true;
+  loop_.refit = [this](const TrialModel& model) {
+    RefitResult fit = fitted(model.file);
+    for (FittedParameter& parameter : fit.parameters) parameter.start = parameter.value;
+    return fit;
+  };
+  Diagnosis found = diagnosis(Verdict::identified);
+  ModelEffect& effect = found.findings.emplace_back().effect;
+  effect.id = "try-1";
+  effect.parameter_names = {"k"};
+  effect.parameters = {0.25};
+  effect.formula = "k * mach";
+  found.findings[0].gain = 100.0;
+  found.findings[0].gain_error = 20.0;
+  EXPECT_THAT(added(run({found, diagnosis(Verdict::silent)}, {1.0, 0.5})), ElementsAre("", "try-1"));
+}
+
+TEST_F(Improve, ByGpsAloneAnEffectOfAnImpossibleSizeIsNotAdded) {
+  Diagnosis found = diagnosis(Verdict::ambiguous, {"static-lag"});
+  for (const auto& [times_usual, by_gps, steps] :
+       {std::tuple{19.0, true, 2U}, {21.0, true, 1U}, {21.0, false, 2U}}) {
+    loop_.is_by_gps = by_gps;
+    found.findings[0].times_usual = times_usual;
+    EXPECT_EQ(run({found, diagnosis(Verdict::silent)}, {1.0, 0.5}).steps.size(), steps) << times_usual;
+  }
 }
 
 TEST_F(Improve, AddsEachFindingInItsOwnStep) {

@@ -84,16 +84,19 @@ void print_findings(const std::vector<Finding>& findings) {
 
 /// The findings, their rivals and the variables that the remaining residual is correlated with.
 void print_short(const Diagnosis& diagnosis) {
-  constexpr std::size_t max_rows = 3;
-  for (std::size_t i = 0; i < std::min(diagnosis.findings.size(), max_rows); ++i) {
-    const Finding& finding = diagnosis.findings[i];
-    say("{}: {}, {}, p {}\n", finding.id(), estimates_text(finding.estimates), finding.size_text(),
+  std::vector<std::string> advice;
+  for (const Finding& finding : diagnosis.findings) {
+    const std::string size =
+        is_unusually_large(finding) ? fmt::format(" ({:.0f} times its usual size)", finding.times_usual) : "";
+    say("{}: {}{}, {}, p {}\n", finding.id(), estimates_text(finding.estimates), size, finding.size_text(),
         probability(finding.p_value));
     std::vector<std::string> rivals;
     for (const Alias& alias : finding.aliases) rivals.push_back(alias.effect);
     if (!rivals.empty()) say("  not distinguishable from {}\n", shortened_list(rivals));
-    if (!finding.advice.sentence.empty()) say("  advice: {}\n", finding.advice.sentence);
+    if (!finding.advice.sentence.empty()) advice.push_back(finding.advice.sentence);
   }
+  if (!advice.empty())
+    say("advice: {}{}\n", advice.front(), advice.size() > 1 ? "; further advice with --verbose" : "");
   if (!diagnosis.unexplained.significant) return;
   std::vector<std::string> variables;
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables)

@@ -32,8 +32,10 @@ enum class StopReason {
   reference_system,  ///< the finding may be an error of the reference system
   in_model,          ///< the findings are already in the model
   unexplained,       ///< no effect of the catalogue explains the remaining structure
-  no_gain,           ///< the tried effects cannot be fitted or do not reduce the residual of held-out samples
-  max_steps          ///< `ImproveOptions::max_steps` effects were added
+  /// The tried effects cannot be fitted, do not reduce the residual of held-out samples, or, by GPS alone,
+  /// are not significant or have an impossible size.
+  no_gain,
+  max_steps  ///< `ImproveOptions::max_steps` effects were added
 };
 
 /// Text: "nothing missing", "reference system", "in model", "unexplained", "no gain", "max steps".
