@@ -292,7 +292,7 @@ class Chain : public BoundModel {
   /// Taper factor of the effects at the static ports: 1 without a taper.
   template <class S>
   S taper_fraction(const State<S>& state) const {
-    const S q = state[Quantity::dynamic_pressure];
+    const S& q = state[Quantity::dynamic_pressure];
     const auto slow = q < S(policy_.taper_below);
     return any(slow) ? select(slow, taper(S(1.0), q), S(1.0)) : S(1.0);
   }
