@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <pcor/base/error.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include "campaign/gps_rows.hpp"
 #include "campaign/reference_id.hpp"
 #include "diagnose/analysis.hpp"
@@ -205,8 +206,9 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
 }
 
 /// Base coefficients of each added effect of the flow, from the model.
-std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model, const std::vector<BaseCoefficient>& base,
-                                      const std::vector<std::string>& added) {
+std::vector<Eigen::VectorXd> added_of(const ModelDefinition& model,
+                                      const std::vector<BaseCoefficient>& base) {
+  const std::vector<std::string> added = added_effects(model);
   std::vector<Eigen::VectorXd> effects;
   for (const ModelEffect& effect : model.model.effects) {
     if (std::find(added.begin(), added.end(), effect.id) == added.end() || !has_uncertain_shape(effect))
@@ -265,7 +267,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
-                          added_of(model, set.base, options.added), prior_of(references, set.base));
+                          added_of(model, set.base), prior_of(references, set.base));
   diagnosis.threshold = analysis.result().threshold;
   diagnosis.findings = findings_of(analysis, references, set.candidates);
   found = diagnosis.findings;

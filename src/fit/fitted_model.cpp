@@ -136,9 +136,10 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
     file.uncertainty.static_defect_ratio.reset();
   }
   Provenance provenance = provenance_of(fit, loss);
-  // The temperature calibration is kept: the pressures do not change it.
+  // The temperature calibration is kept, because the pressures do not change it, and so are the added
+  // effects.
   for (auto& entry : file.provenance) {
-    if (entry.first == "temperature") provenance.push_back(std::move(entry));
+    if (entry.first == "temperature" || entry.first == "added") provenance.push_back(std::move(entry));
   }
   file.provenance = std::move(provenance);
   descend(file, given, "fitted to", flights);

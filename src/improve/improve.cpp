@@ -106,7 +106,6 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("diagnosing", trial.file);
-    diagnose_with.added = added_to(trial.file);
     Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
     if (!diagnose_with.series_of)  // pictures of all steps show the same flights
       diagnose_with.series_of = diagnosis.flights_with_records();

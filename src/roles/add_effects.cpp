@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include <pcor/base/error.hpp>
@@ -31,6 +33,19 @@ std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
     }
   }
   return std::nullopt;
+}
+
+constexpr std::string_view added_key = "added";
+
+/// The list of added effects in a provenance, which gets an empty one if it has no list.
+ProvenanceList& added_list(Provenance& provenance) {
+  for (auto& [key, value] : provenance) {
+    if (key != added_key) continue;
+    if (auto* const list = std::get_if<ProvenanceList>(&value)) return *list;
+    return value.emplace<ProvenanceList>();
+  }
+  return provenance.emplace_back(added_key, ProvenanceValue{ProvenanceList()})
+      .second.emplace<ProvenanceList>();
 }
 
 /// Parameters that only shape an effect are fixed by default.
@@ -92,7 +107,21 @@ ModelDefinition add_effects(const ModelDefinition& model, const std::vector<Mode
     }
     file.variables[error.quantity] = *variable;
   }
+  ProvenanceList& added = added_list(file.provenance);
+  for (const ModelEffect& effect : effects) added.emplace_back(effect.id);
   return file;
+}
+
+std::vector<std::string> added_effects(const ModelDefinition& model) {
+  std::vector<std::string> ids;
+  for (const auto& [key, value] : model.provenance) {
+    const auto* const list = key == added_key ? std::get_if<ProvenanceList>(&value) : nullptr;
+    if (list == nullptr) continue;
+    for (const ProvenanceValue& each : *list) {
+      if (const auto* const id = std::get_if<std::string>(&each)) ids.push_back(*id);
+    }
+  }
+  return ids;
 }
 
 }  // namespace pcor

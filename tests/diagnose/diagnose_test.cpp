@@ -4,6 +4,8 @@
 #include <pcor/base/error.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/fit/refit.hpp>
+#include <pcor/roles/add_effects.hpp>
 #include <pcor/simulate/simulate.hpp>
 
 #include <algorithm>
@@ -283,6 +285,22 @@ TEST(Diagnose, FindsACorrectFormula) {
   ASSERT_THAT(names_of(diagnosis), Contains("try-1"));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "try-1");
   expect_coefficient(diagnosis.findings[0], 3.0);
+}
+
+// The formula is proportional to the torque, and the error is linear in the torque minus 50 percent: what the
+// formula leaves would be named as an effect of the pressure if its shape were exact.
+TEST(Diagnose, TheShapeOfAnAddedEffectIsUncertain) {
+  const pcor::FlightSet flights(
+      {flight("c130-eq18", 341, engine_torque), flight("c130-eq18", 342, engine_torque)});
+  ModelDefinition law = model();
+  law.variables[pcor::Quantity::engine_torque] = "ENGTRQ";
+  const pcor::References laser{pcor::lams_reference()};
+  ModelDefinition added =
+      pcor::refit(flights, pcor::add_effects(law, {pcor::neutral_effect("speedbrake-thrust")}), laser).model;
+  EXPECT_THAT(pcor::added_effects(added), testing::ElementsAre("speedbrake-thrust"));
+  EXPECT_THAT(names_of(pcor::diagnose(flights, added, laser)), IsEmpty());
+  added.provenance.clear();
+  EXPECT_THAT(names_of(pcor::diagnose(flights, added, laser)), Not(IsEmpty()));
 }
 
 TEST(Diagnose, FormulaWithoutValuesStatesReason) {

@@ -94,7 +94,15 @@ TEST(WithEffects, RestOfTheModelIsUnchanged) {
   const std::string added = "\n[[effect]]\nid = \"static-qp\"\nparameters = { a2 = 0.0 }\n";
   std::string expected = write_model(model());
   expected.insert(expected.find("\n[law]"), added);
-  EXPECT_EQ(text, expected);
+  EXPECT_EQ(text, expected + "added = [\"static-qp\"]\n");
+}
+
+TEST(WithEffects, ProvenanceListsTheAddedEffects) {
+  const ModelDefinition once = add_effects(model(), {of_catalogue("static-qp")});
+  const ModelDefinition twice = add_effects(once, {of_catalogue("static-lag"), thrust()}, {"ENGTRQ"});
+  EXPECT_THAT(added_effects(model()), ElementsAre());
+  const ModelDefinition read = pcor::parse_model(write_model(twice), "made.toml");
+  EXPECT_THAT(added_effects(read), ElementsAre("static-qp", "static-lag", "my-thrust"));
 }
 
 TEST(WithEffects, RequiredVariablesAreAdded) {

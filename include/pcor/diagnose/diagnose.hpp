@@ -44,9 +44,6 @@ struct DiagnoseOptions {
   double training_share = 1.0;               ///< fraction of each flight used, from its start, 0 to 1
   /// True: references are exact; no effect of a laser or of another system is tested.
   bool trust_reference = false;
-  /// Ids of effects that an earlier diagnosis found and that the model has now. The shape of an effect of the
-  /// flow is uncertain, so what the formula leaves of such an effect is not named as a further effect.
-  std::vector<std::string> added{};
   std::uint64_t seed = 20120106;  ///< seed of the random draws that set thresholds
   /// Callback after every flight of this rank.
   std::function<void(std::size_t done, std::size_t total)> progress{};

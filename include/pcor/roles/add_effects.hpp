@@ -13,10 +13,14 @@ namespace pcor {
 
 /// Model with additional `effects`, with neutral parameters unless given. Roles that they need and the model
 /// does not name get the usual variable of NCAR's files. `variables` are those of a flight, to choose among
-/// usual names; empty if no flight is available.
+/// usual names; empty if no flight is available. The provenance lists the effects (`added_effects`).
 /// @throws Error if an effect is already in the model or unknown, or needs a role without a usual variable.
 ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
                             const std::vector<std::string>& variables = {});
+
+/// Ids of the effects that `add_effects` added to a published law, in the model or in the models before it: a
+/// diagnosis treats the shape of those of the flow as uncertain.
+std::vector<std::string> added_effects(const ModelDefinition& model);
 
 /// One of `surface_info` with its knots over what some flights flew: from the first to the 99th percentile of
 /// both axes at Mach numbers above 0.18, which is 60 m/s. Coefficients are zero.
