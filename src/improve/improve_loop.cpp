@@ -444,15 +444,21 @@ class ForwardSelection {
     if (!now.findings.empty())
       return stop(StopReason::in_model, "the effects named by the diagnosis are already in the model");
     const Unexplained& left = now.unexplained;
+    std::string about = "not correlated with any variable of the files";
+    if (!left.variables.empty()) {
+      about = fmt::format("correlated with {}", left.variables.front().name);
+      if (!now.unnamed_roles.empty()) {
+        const UnnamedRole& unnamed = now.unnamed_roles.front();
+        about += fmt::format("; write {} = \"{}\" into [variables] of the model to test {}", unnamed.role,
+                             unnamed.variable, unnamed.effect);
+      } else {
+        about += loop_.trace_variables ? "; no further formula of this variable can be added"
+                                       : "; --trace-variables adds a formula of this variable";
+      }
+    }
     stop(StopReason::unexplained,
-         fmt::format(
-             "{} rms is unexplained{}{}, {}", shown(left.rms), left.regime.empty() ? "" : ", largest in ",
-             left.regime,
-             left.variables.empty()
-                 ? "not correlated with any variable of the files"
-                 : fmt::format("correlated with {}; {}", left.variables.front().name,
-                               loop_.trace_variables ? "no further formula of this variable can be added"
-                                                     : "--trace-variables adds a formula of this variable")));
+         fmt::format("{} rms is unexplained{}{}, {}", shown(left.rms),
+                     left.regime.empty() ? "" : ", largest in ", left.regime, about));
   }
 
   /// Adds the candidate and keeps it if it helps. @return the reason if it does not; empty if it is kept
