@@ -7,15 +7,25 @@
 using pcor::Diagnosis;
 using pcor::Finding;
 
+namespace {
+
+/// One finding. @param gain decrease of chi2 of held-out parts, with a standard error of 10
+Diagnosis with_finding(const char* effect, double times_usual, double gain) {
+  Diagnosis diagnosis;
+  Finding& finding = diagnosis.findings.emplace_back();
+  finding.effect.id = effect;
+  finding.times_usual = times_usual;
+  finding.gain = gain;
+  finding.gain_error = 10.0;
+  return diagnosis;
+}
+
+}  // namespace
+
 TEST(DoubtBySize, EffectOfImpossibleSizeHasAnUnknownErrorAsRival) {
   for (const auto& [times_usual, gain, is_doubted] :
        {std::tuple{19.0, 10.0, false}, {21.0, 10.0, true}, {98.0, 29.0, true}, {98.0, 31.0, false}}) {
-    Diagnosis diagnosis;
-    Finding& finding = diagnosis.findings.emplace_back();
-    finding.effect.id = "flaps-gear";
-    finding.times_usual = times_usual;
-    finding.gain = gain;
-    finding.gain_error = 10.0;
+    Diagnosis diagnosis = with_finding("flaps-gear", times_usual, gain);
     pcor::internal::doubt_by_size(diagnosis);
     EXPECT_EQ(diagnosis.findings[0].rival.empty(), !is_doubted) << times_usual << ' ' << gain;
     EXPECT_EQ(diagnosis.notes.empty(), !is_doubted);
@@ -26,12 +36,7 @@ TEST(DoubtBySize, EffectOfImpossibleSizeHasAnUnknownErrorAsRival) {
 TEST(DoubtByAtmosphere, EffectOfImpossibleSizeMayBeTheAtmosphereEvenIfItPredicts) {
   for (const auto& [times_usual, gain, is_doubted] :
        {std::tuple{19.0, 31.0, false}, {21.0, 31.0, true}, {1.0, 29.0, true}}) {
-    Diagnosis diagnosis;
-    Finding& finding = diagnosis.findings.emplace_back();
-    finding.effect.id = "qcf-gain";
-    finding.times_usual = times_usual;
-    finding.gain = gain;
-    finding.gain_error = 10.0;
+    Diagnosis diagnosis = with_finding("qcf-gain", times_usual, gain);
     pcor::internal::doubt_by_atmosphere(diagnosis);
     EXPECT_EQ(diagnosis.findings[0].rival, is_doubted ? "the atmosphere" : "") << times_usual << ' ' << gain;
     EXPECT_EQ(diagnosis.notes.empty(), !is_doubted);
