@@ -138,6 +138,18 @@ class Results(CheckTest):
             self.assertEqual(row["verdict"], result["verdict"] if result["ran"] else "not run")
             if result["ran"]:
                 self.assertEqual(float(row["value"]), result["key"]["value"])
+                self.assertEqual(float(row["tolerance"]), result["key"]["matters"])
+            else:
+                self.assertEqual(row["reason"], result["reason"])
+
+    def test_table_has_the_reason_of_a_withheld_verdict(self):
+        """Without a model of the second system its pair is uncorrected."""
+        table = self.path / "checks.csv"
+        self.json_of("check", ONE, "-m", self.model(), "--table", table)
+        with open(table, newline="") as file:
+            row = next(row for row in csv.DictReader(file) if row["check"] == "static-pressure")
+        self.assertEqual(row["verdict"], "inconclusive")
+        self.assertIn("second system", row["reason"])
 
     def test_text(self):
         text = self.done("check", ONE, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}").stdout

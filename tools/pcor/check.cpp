@@ -123,8 +123,8 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
                                                  program(), command_line(options), second)
                                    : "";
   if (fails("total-pressure")) {
-    return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
-           "pressure, so no term of the model can correct it." +
+    return "A transducer, a pitot or a line of one system is wrong. No term of the model can correct it, "
+           "because static defects cancel in the total pressure." +
            (pictures.empty() ? "" : "\n" + pictures);
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
@@ -200,17 +200,19 @@ void print(const Checks& checks, const CheckArguments& options, const std::optio
 /// @param together the checks of all flights, which equal the checks of the flight if there is only one
 FlightTable flight_table(const FlightSet& flights, const std::optional<ModelDefinition>& model,
                          const CheckOptions& how, const Checks& together) {
-  FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
+  FlightTable table(
+      {"flight", "check", "verdict", "value", "standard_error", "unit", "what", "tolerance", "reason"});
   std::vector<std::vector<CheckResult>> alone{together.results};
   if (flights.size() > 1) alone = check_per_flight(flights, model, how);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const std::string name = flights.name(i);
     for (const CheckResult& result : alone[i]) {
       if (result.ran) {
-        table.add({name, result.name, std::string(to_string(result.verdict)), cell(result.key.value),
-                   cell(result.key.standard_error), result.key.unit, result.key.what});
+        const TestStatistic& key = result.key;
+        table.add({name, result.name, std::string(to_string(result.verdict)), cell(key.value),
+                   cell(key.standard_error), key.unit, key.what, cell(key.matters), result.withheld});
       } else {
-        table.add({name, result.name, "not run", "", "", "", result.reason});
+        table.add({name, result.name, "not run", "", "", "", "", "", result.reason});
       }
     }
   }
