@@ -197,9 +197,9 @@ ReportTable flights_table(const std::vector<ProcessedFlight>& flights) {
                     {"flight", "model", "state", "samples", "corrected", "mean delta-p (hPa)",
                      "minimum delta-p (hPa)", "maximum delta-p (hPa)"}};
   for (const ProcessedFlight& flight : flights) {
-    std::vector<std::string> row{flight.input.filename().string(), flight.model.model.name,
-                                 std::string(to_string(flight.state))};
-    if (!flight.reason.empty()) row.back() += ": " + flight.reason;
+    std::vector<std::string> row{
+        flight.input.filename().string(), flight.model.model.name,
+        flight.reason.empty() ? std::string(to_string(flight.state)) : "not corrected: " + flight.reason};
     if (flight.state == FlightState::processed) {
       const ProcessSummary& summary = flight.summary;
       for (const std::size_t count : {summary.samples, summary.corrected})

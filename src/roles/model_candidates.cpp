@@ -136,8 +136,8 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
   for (const ModelCandidate& law : laws) {
     if (!first.model.law.in_processing && law.model.law.in_processing && law.is_in_time)
       notes.push_back(
-          fmt::format("such flights are processed with {}, which does not apply to this flight: {}",
-                      law.path.stem().string(), reasons_of({law})));
+          fmt::format("{} is now processed with another model, which does not apply to this flight: {}",
+                      flight.aircraft(), reasons_of({law})));
   }
   const VariableNaming& family = family_of(flight);
   laws.erase(

@@ -153,7 +153,8 @@ class Table {
     const ProcessSummary& summary = flight.summary;
     say("{:<{}} ", flight.input.filename().string(), width_);
     if (flight.state != FlightState::processed) {
-      say("{}{}\n", to_string(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
+      say("{}\n",
+          flight.reason.empty() ? std::string(to_string(flight.state)) : "not corrected: " + flight.reason);
     } else if (summary.in_flight == 0) {
       say("{:>9} {:>9} {:>9} {:>9} {:>9}{}\n", summary.samples, summary.corrected, "no flight", "", "",
           model_of(flight));
@@ -164,7 +165,8 @@ class Table {
   }
 
   static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
-    say("delta-p: mean in flight, hPa, with minimum and maximum\n");
+    if (count_of(flights, FlightState::processed) > 0)
+      say("delta-p: mean in flight, hPa, with minimum and maximum\n");
     Flags flagged{};
     for (const ProcessedFlight& flight : flights) {
       for (std::size_t i = 0; i < flagged.size(); ++i) flagged[i] += flight.summary.flagged[i];
@@ -183,7 +185,7 @@ class Table {
       notes.emplace_back(note.severity, fmt::format("{}: {}", whose, note.text));
     }
     say_notes(notes, max_notes);
-    say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
+    say("\n{} flights: {} processed into {}, {} up to date, {} not corrected\n", flights.size(),
         count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
         count_of(flights, FlightState::unreadable));
   }
