@@ -215,12 +215,13 @@ Report check_report(const Checks& checks) {
   const std::size_t consistent = names[CheckVerdict::consistent].size();
   const std::size_t inconclusive = names[CheckVerdict::inconclusive].size();
   const std::size_t ran = consistent + inconclusive + inconsistent.size();
-  report.title = !inconsistent.empty() ? fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(),
-                                                     ran, fmt::join(inconsistent, ", "))
-                 : inconclusive > 0 ? fmt::format("No check contradicts the model; {} of {} are inconclusive",
-                                                  inconclusive, ran)
-                 : consistent > 0   ? "No check contradicts the model"
-                                    : "No check ran";
+  report.title =
+      !inconsistent.empty() ? fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(), ran,
+                                          fmt::join(inconsistent, ", "))
+      : inconclusive > 0
+          ? fmt::format("No check contradicts the model; {} of {} checks inconclusive", inconclusive, ran)
+      : consistent > 0 ? "No check contradicts the model"
+                       : "No check ran";
   report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
   report.summary.insert(
       report.summary.begin(),

@@ -204,8 +204,8 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                                      [](const CheckedFlight& f) { return f.air.laser.has_value(); });
   if (!has_laser) {
     return not_run(
-        "no flight has a laser airspeed; give a model (-m) with lams_airspeed, "
-        "attack and sideslip in [variables]");
+        "no flight has a laser airspeed; if one was recorded, name lams_airspeed, attack and sideslip in the "
+        "[variables] of a model (-m)");
   }
   const bool has_thermometer = std::any_of(flights.begin(), flights.end(), [](const CheckedFlight& f) {
     return f.air.laser && !f.air.temperature.empty();

@@ -94,8 +94,12 @@ void ComparisonPanels::add_panels() {
       "Residual in time", "Residual: reference minus model; regimes are shaded.", residuals_, "residual"});
   add_model_table();
   add_strip(report());
-  report().items.emplace_back(
-      RegimeTable{"By regime", "Bias and rms of the residual in each regime.", residuals_});
+  report().items.emplace_back(RegimeTable{"By regime",
+                                          last.is_by_gps()
+                                              ? "Bias (mean) and rms of the residual in each regime, with "
+                                                "variations of the atmosphere. The GPS bias excludes these."
+                                              : "Bias and rms of the residual in each regime.",
+                                          residuals_});
   add_regimes(report(), residuals_);
   report().items.emplace_back(BinnedPanel{"Residual against a variable",
                                           "A slope or curvature larger than the error bars indicates a "

@@ -37,9 +37,11 @@ ReportTable coefficient_table(const RefitResult& fit) {
   table.headers = {"coefficient", "before", "after", "std. error", "jackknife", "unit", "stage"};
   if (fit.is_by_gps()) {
     table.caption =
-        "Likelihood: standard error by the likelihood of wind and height; jackknife: from leaving out one "
-        "flight or one part of a flight at a time (inf: one alone determines the coefficient). Std. error: "
-        "the one of these two with the larger error of delta-p. Unit 1: a ratio, such as hPa/hPa.";
+        "Likelihood: standard error by the likelihood of the GPS references; jackknife: from leaving out one "
+        "flight or one part of a flight at a time (inf: one alone determines the coefficient). Stated error: "
+        "the one of these two with the larger error of delta-p; a combination of coefficients that the "
+        "flights do not determine adds its error before the fit. Unit 1: a ratio, such as hPa/hPa.";
+    table.headers[3] = "stated error";
     table.headers.insert(table.headers.begin() + 4, "likelihood");
   }
   const auto number = [](double error) { return std::isnan(error) ? "" : fmt::format("{:.2g}", error); };

@@ -387,7 +387,7 @@ class ForwardSelection {
     // After an addition, the diagnosis of the extended model has the next candidates.
     if (result_.steps.size() > added + 1) return;
     refused_.clear();  // `why_stopped` has them
-    stop(StopReason::no_gain, fmt::format("{}", fmt::join(refusals, "; ")));
+    stop(StopReason::no_gain, fmt::format("no candidate is kept; {}", fmt::join(refusals, "; ")));
   }
 
   void stop(StopReason reason, std::string why) {

@@ -200,7 +200,7 @@ class WhatIf {
     this.steps = {kind: 'bars', title: 'What if: steps', bars: this.stepBars(), axis: heldOutWords, unit: 'hPa'};
     this.panels.push(add(this.steps, `Effects in the order in which they were switched on. ${this.fit.heldOut
       ? 'Held out: flights or parts that no fit includes.'
-      : 'Held out: five-fold cross-validation in blocks of 5 min, without outliers.'}`));
+      : 'Held out: five-fold cross-validation of the fit on this page, in blocks of 5 min, without outliers.'}`));
     const regimes = {title: 'Bias and rms by regime, what if', columns};
     this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);

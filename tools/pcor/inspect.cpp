@@ -154,7 +154,7 @@ void print_head(const Inspection& flight) {
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
   say("variables: {}\n", fmt::join(rates, ", "));
   if (flight.alike.empty()) {
-    say("naming convention: {}, because the file matches no known convention\n", flight.family_title);
+    say("naming convention: unknown; names of {} ({}) are tried\n", flight.family, flight.family_title);
   } else if (flight.alike.size() > 1) {
     say("naming convention: files of {} match; names of {} are used; set the right one in the model by "
         "roles\n",
