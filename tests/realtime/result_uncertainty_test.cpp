@@ -408,6 +408,27 @@ TEST(ResultUncertainty, IsMissingOutsideTheDomainOfTheLaw) {
   }
 }
 
+// Attack noise of 0.3 hPa at a radome pressure of 0.001 hPa exceeds all possible angles in both directions.
+TEST(ResultUncertainty, IsMissingWithABitWhereTheNoiseOfAnInputExceedsItsRange) {
+  Recorded recorded = without(everything_recorded(), {Quantity::attack, Quantity::sideslip});
+  recorded[Quantity::radome_dynamic_pressure] = 1e-3;
+  recorded[Quantity::attack_differential_pressure] = 0.0;
+  recorded[Quantity::sideslip_differential_pressure] = 0.0;
+  ModelUncertainty uncertainty;
+  for (const double noise : {1e-6, 0.3}) {
+    uncertainty.random[index(Quantity::attack_differential_pressure)] = noise;
+    std::optional<Loop> loop =
+        Loop::build(law(), roles(recorded), 1.0, nullptr, CorrectWith::model, uncertainty);
+    ASSERT_TRUE(loop);
+    for (const auto& [quantity, value] : recorded) loop->state()[quantity] = value;
+    loop->run(1800.0);
+    const bool is_possible = noise < 1e-3;
+    EXPECT_FALSE(std::isnan(loop->state()[Quantity::static_defect]));
+    EXPECT_EQ(std::isnan(loop->state()[Quantity::static_defect_uncertainty]), !is_possible);
+    EXPECT_EQ(loop->quality().has(Quality::outside_domain), !is_possible);
+  }
+}
+
 TEST(ResultUncertainty, TaperDependsOnTheDynamicPressure) {
   Model model;
   model.effects = {{"static-constant", {0.02}}};

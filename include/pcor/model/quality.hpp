@@ -75,8 +75,8 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
      "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "outside the domain of the law, or flaps extended",
      "an input lies outside the domain of the law, a quantity of the domain is missing, the flaps are "
-     "extended, or "
-     "the absolute delta-p of the model exceeds 0.6 q in flight: no uncertainty"},
+     "extended, the absolute delta-p of the model exceeds 0.6 q in flight, or the noise of an input exceeds "
+     "its possible range: no uncertainty"},
     {Quality::after_gap, "after_gap", "near a gap: too few neighbours for rates of change",
      "near a gap, or missing inputs of an airspeed: effects of rates of change have too few neighbours; in "
      "real time also the first sample after a gap"},

@@ -40,7 +40,9 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 /// the root of the coefficients' covariance, the noise of each role, of each rate of change (for lags), the
 /// surfaces outside their envelope, and the remaining error of the law. Curvature cancels in the
 /// difference; a limit, as of saturated air, counts in the proportion in which the error reaches it. Where
-/// one side has no result, the difference is that of the other side.
+/// one side has no result, the difference is that of the other side. Where neither side has a result, as for
+/// flow angles at a radome pressure below its noise, the uncertainty is missing, with the bit
+/// `outside_domain`.
 ///
 /// Cost: two runs of the chain for each u_i. Outside its envelope a surface is flat, and its error grows by
 /// the rms slope inside the envelope. docs/uncertainty.md lists the contributions.
@@ -131,7 +133,10 @@ class ResultUncertainty final : public Functor {
       // A temperature of the host is not a result.
       const bool is_result =
           i == 0 || (!flags.has(Quality::corrected_with_lams) && (i < 3 || chain_.has_temperature()));
-      state[uncertain_results[i].uncertainty] = is_result ? std::sqrt(variances_[i]) : missing<double>();
+      const double uncertainty = is_result ? std::sqrt(variances_[i]) : missing<double>();
+      state[uncertain_results[i].uncertainty] = uncertainty;
+      flags.set(is_result && is_missing(uncertainty) && !is_missing(state[uncertain_results[i].result]),
+                Quality::outside_domain);
     }
   }
 
