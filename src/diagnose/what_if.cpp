@@ -188,14 +188,12 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
 
 /// Whether the provenance of a model states a fit to one of the flights.
 bool is_fitted_to(const ModelDefinition& model, const FlightSet& flights) {
-  for (const auto& [key, value] : model.provenance) {
-    const auto* const fitted = std::get_if<ProvenanceList>(&value);
-    if (key != "flights" || fitted == nullptr) continue;
-    for (const ProvenanceValue& each : *fitted) {
-      const auto* const name = std::get_if<std::string>(&each);
-      for (std::size_t f = 0; name != nullptr && f < flights.size(); ++f) {
-        if (*name == flights.name(f)) return true;
-      }
+  const auto* const fitted = find_entry<ProvenanceList>(model.provenance, "flights");
+  if (fitted == nullptr) return false;
+  for (const ProvenanceValue& each : *fitted) {
+    const auto* const name = std::get_if<std::string>(&each);
+    for (std::size_t f = 0; name != nullptr && f < flights.size(); ++f) {
+      if (*name == flights.name(f)) return true;
     }
   }
   return false;

@@ -17,17 +17,12 @@ namespace {
 
 constexpr const char* before_key = "before";
 
-const ProvenanceValue* entry(const Provenance& all, const std::string& key) {
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&key](const auto& each) { return each.first == key; });
-  return found == all.end() ? nullptr : &found->second;
-}
-
 /// A model as an entry of the list.
 Provenance entry_of(const ModelDefinition& model) {
   Provenance all;
   all.emplace_back("name", ProvenanceValue{model.model.name});
-  if (const ProvenanceValue* const date = entry(model.provenance, "date")) all.emplace_back("date", *date);
+  if (const auto* const date = find_entry<std::string>(model.provenance, "date"))
+    all.emplace_back("date", *date);
   if (!model.law.source.empty()) all.emplace_back("source", ProvenanceValue{model.law.source});
   return all;
 }
@@ -62,21 +57,17 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
 
 std::string unfitted_name(const ModelDefinition& model) {
   const std::string& name = model.model.name;
-  if (entry(model.provenance, "program") == nullptr) return name;  // name given by its author
+  if (find_entry<std::string>(model.provenance, "program") == nullptr)
+    return name;  // name given by its author
   return name.substr(0, std::min(name.find(", fitted to "), name.find(", improved on ")));
 }
 
 void descend(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
              const std::string& flights) {
   ProvenanceList before;
-  if (const ProvenanceValue* const earlier = entry(from.provenance, before_key)) {
-    if (const auto* const list = std::get_if<ProvenanceList>(earlier)) before = *list;
-  }
+  if (const auto* const earlier = find_entry<ProvenanceList>(from.provenance, before_key)) before = *earlier;
   before.emplace_back(entry_of(from));
-  Provenance& all = made.provenance;
-  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& each) { return each.first == before_key; }),
-            all.end());
-  all.emplace_back(before_key, ProvenanceValue{std::move(before)});
+  set_entry(made.provenance, before_key, std::move(before));
   made.law.in_processing = false;
   made.model.name = fmt::format("{}, {} {}", unfitted_name(from), how, flights);
 }

@@ -20,6 +20,16 @@ using namespace internal;
 
 namespace fs = std::filesystem;
 
+void set_entry(Provenance& provenance, const std::string& key, ProvenanceValue value) {
+  erase_entry(provenance, key);
+  provenance.emplace_back(key, std::move(value));
+}
+
+void erase_entry(Provenance& provenance, std::string_view key) {
+  const auto has_key = [key](const auto& entry) { return entry.first == key; };
+  provenance.erase(std::remove_if(provenance.begin(), provenance.end(), has_key), provenance.end());
+}
+
 std::vector<Quantity> ModelDefinition::roles() const {
   std::vector<Quantity> roles;
   for (const auto& [role, variable] : variables) roles.push_back(role);

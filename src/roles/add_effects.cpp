@@ -12,6 +12,7 @@
 #include <pcor/realtime/chain.hpp>
 #include <pcor/roles/add_effects.hpp>
 #include "model_io/model_names.hpp"
+#include "roles/role_evidence.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
@@ -35,18 +36,13 @@ std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
   return std::nullopt;
 }
 
-constexpr std::string_view added_key = "added";
-
-/// The list of added effects in a provenance, which gets an empty one if it has no list.
-ProvenanceList& added_list(Provenance& provenance) {
-  for (auto& [key, value] : provenance) {
-    if (key != added_key) continue;
-    if (auto* const list = std::get_if<ProvenanceList>(&value)) return *list;
-    return value.emplace<ProvenanceList>();
-  }
-  return provenance.emplace_back(added_key, ProvenanceValue{ProvenanceList()})
-      .second.emplace<ProvenanceList>();
+/// The only variable of a flight with clear evidence for a role.
+std::optional<std::string> evident_variable(Quantity role, const Flight& flight) {
+  const std::vector<RoleCandidate> candidates = role_candidates(flight, info_of(role).name);
+  return is_sure(candidates) ? std::optional(candidates.front().variable) : std::nullopt;
 }
+
+constexpr const char* added_key = "added";
 
 /// Parameters that only shape an effect are fixed by default.
 EffectFit fit_of(const ModelEffect& effect) {
@@ -87,7 +83,7 @@ void add(ModelDefinition& file, ModelEffect effect) {
 }  // namespace
 
 ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
-                            const std::vector<std::string>& variables) {
+                            const std::vector<std::string>& variables, const Flight* flight) {
   ModelDefinition file = model;
   file.law.in_processing = false;
   for (const ModelEffect& effect : effects) add(file, effect);
@@ -97,7 +93,8 @@ ModelDefinition add_effects(const ModelDefinition& model, const std::vector<Mode
         fmt::format("model '{}': {}", one_line(model.model.name), one_line(error.message()));
     if (error.code != BindingError::Code::role_missing) throw Error(Error::Code::model, why);
     const std::vector<std::string> usual = usual_variables(error.quantity);
-    const std::optional<std::string> variable = usual_variable(usual, variables);
+    std::optional<std::string> variable = usual_variable(usual, variables);
+    if (!variable && flight != nullptr) variable = evident_variable(error.quantity, *flight);
     if (!variable) {
       throw Error(Error::Code::model,
                   why + (usual.empty()
@@ -107,19 +104,19 @@ ModelDefinition add_effects(const ModelDefinition& model, const std::vector<Mode
     }
     file.variables[error.quantity] = *variable;
   }
-  ProvenanceList& added = added_list(file.provenance);
+  ProvenanceList added;
+  for (const std::string& earlier : added_effects(model)) added.emplace_back(earlier);
   for (const ModelEffect& effect : effects) added.emplace_back(effect.id);
+  set_entry(file.provenance, added_key, std::move(added));
   return file;
 }
 
 std::vector<std::string> added_effects(const ModelDefinition& model) {
   std::vector<std::string> ids;
-  for (const auto& [key, value] : model.provenance) {
-    const auto* const list = key == added_key ? std::get_if<ProvenanceList>(&value) : nullptr;
-    if (list == nullptr) continue;
-    for (const ProvenanceValue& each : *list) {
-      if (const auto* const id = std::get_if<std::string>(&each)) ids.push_back(*id);
-    }
+  const auto* const list = find_entry<ProvenanceList>(model.provenance, added_key);
+  if (list == nullptr) return ids;
+  for (const ProvenanceValue& each : *list) {
+    if (const auto* const id = std::get_if<std::string>(&each)) ids.push_back(*id);
   }
   return ids;
 }

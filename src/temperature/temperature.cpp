@@ -470,11 +470,7 @@ class TemperatureCalibration {
                            {"sigma_m", result_.likelihood.sigma},
                            {"pressure_error_hpa", result_.pressure_error},
                            {"law_error_hpa", result_.law_error}};
-    Provenance& all = result_.model.provenance;
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [](const auto& entry) { return entry.first == "temperature"; }),
-              all.end());
-    all.emplace_back("temperature", ProvenanceValue{std::move(temperature)});
+    set_entry(result_.model.provenance, "temperature", std::move(temperature));
   }
 
   const FlightSet& flights_;

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/flight/flight.hpp>
 #include <pcor/improve/improve.hpp>
 #include <pcor/roles/add_effects.hpp>
 
@@ -8,7 +9,9 @@
 #include <vector>
 
 #include "support/error_of.hpp"
+#include "support/netcdf_file.hpp"
 #include "support/synthetic_samples.hpp"
+#include "support/temporary_directory.hpp"
 
 using namespace pcor::internal;
 
@@ -129,6 +132,21 @@ TEST(WithEffects, ChoosesVariablesOfTheFlight) {
   const ModelDefinition suffixed =
       add_effects(model(), {of_catalogue("static-attack")}, {"ATTACKS", "AKRD_RWO"});
   EXPECT_EQ(suffixed.variables.at(Quantity::attack), "AKRD_RWO");
+}
+
+TEST(WithEffects, ChoosesAVariableByItsDescription) {
+  const pcor::test::TemporaryDirectory folder;
+  const auto path = folder.path() / "flight.nc";
+  {
+    pcor::test::NetcdfMaker maker(path);
+    maker.time(pcor::test::sequence(0, 30));
+    maker.text(maker.series("TRQ1", "percent", std::vector<double>(30, 60.0)), "long_name", "Engine Torque");
+  }
+  const pcor::Flight flight(path);
+  const std::vector<ModelEffect> effects{of_catalogue("speedbrake-thrust")};
+  EXPECT_EQ(add_effects(model(), effects, flight.variables(), &flight).variables.at(Quantity::engine_torque),
+            "TRQ1");
+  EXPECT_THAT(refusal(effects, flight.variables()), IsError(Error::Code::model, "'engine_torque'"));
 }
 
 TEST(WithEffects, MissingFlightVariablesAreReported) {

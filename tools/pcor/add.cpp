@@ -125,7 +125,7 @@ void run(const AddArguments& options) {
       effects.push_back(surface ? *surface : shaped_effect(id));
     }
   }
-  const ModelDefinition extended = add_effects(model, effects, variables);
+  const ModelDefinition extended = add_effects(model, effects, variables, flight);
   OutputTransaction together;
   deliver(extended, options.output, inputs);
   const auto first_added = static_cast<std::ptrdiff_t>(model.model.effects.size());

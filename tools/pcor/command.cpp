@@ -124,13 +124,11 @@ void add_force_option(CLI::App& command, bool& force) {
 
 void refuse_worse(const std::string& worse, bool force, ModelDefinition& model) {
   // The verdict on an earlier step does not apply to this one.
-  Provenance& all = model.provenance;
-  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& entry) { return entry.first == "forced"; }),
-            all.end());
+  erase_entry(model.provenance, "forced");
   if (worse.empty()) return;
   if (!force)
     throw Error(Error::Code::fit, fmt::format("no model was written: {}; use --force to write it", worse));
-  all.emplace_back("forced", ProvenanceValue{worse});
+  set_entry(model.provenance, "forced", worse);
 }
 
 JsonResult::JsonResult(const CommonOptions& options) : destination_(is_speaker() ? options.json : "") {

@@ -80,6 +80,21 @@ struct ProvenanceValue : std::variant<std::string, double, std::int64_t, bool, P
   using variant::variant;
 };
 
+/// Value of a key; nullptr if the key is missing or its value is not a T.
+template <class T>
+const T* find_entry(const Provenance& provenance, std::string_view key) {
+  for (const auto& [name, value] : provenance) {
+    if (name == key) return std::get_if<T>(&value);
+  }
+  return nullptr;
+}
+
+/// Sets a key to a value, at the end.
+void set_entry(Provenance& provenance, const std::string& key, ProvenanceValue value);
+
+/// Removes a key and its value, if present.
+void erase_entry(Provenance& provenance, std::string_view key);
+
 /// Contents of a model file: the model for the real-time part, and metadata for files, fits and users.
 struct ModelDefinition {
   Model model;

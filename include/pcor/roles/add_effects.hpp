@@ -14,9 +14,10 @@ namespace pcor {
 /// Model with additional `effects`, with neutral parameters unless given. Roles that they need and the model
 /// does not name get the usual variable of NCAR's files. `variables` are those of a flight, to choose among
 /// usual names; empty if no flight is available. The provenance lists the effects (`added_effects`).
-/// @throws Error if an effect is already in the model or unknown, or needs a role without a usual variable.
+/// @param flight in which a variable without a usual name is chosen by its name, unit and values; may be null
+/// @throws Error if an effect is already in the model or unknown, or needs a role without such a variable.
 ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
-                            const std::vector<std::string>& variables = {});
+                            const std::vector<std::string>& variables = {}, const Flight* flight = nullptr);
 
 /// Ids of the effects that `add_effects` added to a published law, in the model or in the models before it: a
 /// diagnosis treats the shape of those of the flow as uncertain.
