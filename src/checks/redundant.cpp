@@ -158,6 +158,21 @@ void add_results(const CheckedFlights& flights, const std::string& check, const 
   result.columns = {column(" one", names[0], first), column(" two", names[1], second)};
 }
 
+/// 5th and 95th percentile of the finite values; NaN without values. A few samples, as of a take-off, do not
+/// widen this range.
+std::pair<double, double> central_range_of(std::vector<double> values) {
+  values.erase(
+      std::remove_if(values.begin(), values.end(), [](double value) { return !std::isfinite(value); }),
+      values.end());
+  if (values.empty()) return {nan, nan};
+  const auto percentile = [&values](std::size_t percent) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  return {percentile(5), percentile(95)};
+}
+
 }  // namespace
 
 RedundantFit fit_of(const Redundant& both) {
@@ -179,19 +194,19 @@ RedundantFit fit_of(const Redundant& both) {
   fit.difference = mean.coefficients.front();
   fit.scatter = mean.rms;
   fit.samples = mean.samples;
-  const auto [minimum, maximum] = range_of(both.first);
+  const auto [lowest, highest] = central_range_of(both.first);
   // The slope of the difference against the mean is zero also where noise exceeds the range, as in level
   // flight; the ordinary line is then too flat, and the orthogonal one undetermined (Bland and Altman 1986,
   // Lancet 327, 307).
   const LeastSquares change =
       least_squares({std::vector<double>(middle.size(), 1.0), middle}, off, both.time, both.step);
-  fit.across = (maximum - minimum) * change.coefficients[1];
+  fit.across = (highest - lowest) * change.coefficients[1];
   return fit;
 }
 
 std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
   return {judged(fit.difference, size, "hPa", "difference of the systems"),
-          judged(fit.across, size, "hPa", "change over the range of pressure")};
+          judged(fit.across, size, "hPa", "change from the 5th to the 95th percentile of pressure")};
 }
 
 CheckResult check_total_pressure(const CheckedFlights& flights) {

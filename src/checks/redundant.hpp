@@ -21,7 +21,7 @@ struct RedundantFit {
   LineFit orthogonal{};     ///< equal noise in both
   Estimate difference{};    ///< mean of second minus first, hPa
   double scatter = 0.0;     ///< scatter of the difference, hPa
-  Estimate across{};        ///< change of the difference from the minimum to the maximum pressure, hPa
+  Estimate across{};        ///< change of the difference from the 5th to the 95th percentile of pressure, hPa
   std::size_t samples = 0;  ///< number of samples used
   double step = 1.0;        ///< record interval of the samples, s
 };

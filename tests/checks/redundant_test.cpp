@@ -95,6 +95,23 @@ TEST(RedundantFit, LevelFlightShowsNoChangeOverTheRange) {
   EXPECT_EQ(large, 0U);  // four standard errors are one in 16,000
 }
 
+// Lags of the systems differ most near the take-off: five samples there must not decide the verdict.
+TEST(RedundantFit, FewSamplesAtOneEndDoNotDecide) {
+  Redundant both;
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> noise(0.0, 0.05);
+  for (int i = 0; i < 3600; ++i) {
+    const bool is_take_off = i < 5;
+    both.time.push_back(i);
+    both.first.push_back((is_take_off ? 988.0 : 765.0) + noise(engine));
+    both.second.push_back(both.first.back() + (is_take_off ? 0.6 : 0.0) + noise(engine));
+  }
+  const RedundantFit fit = fit_of(both);
+  constexpr double size_that_matters = 0.3;  // hPa
+  for (const pcor::TestStatistic& number : judged_of(fit, size_that_matters))
+    EXPECT_EQ(number.verdict, pcor::CheckVerdict::consistent) << number.value;
+}
+
 /// A flight with two pairs of pressures, whose difference is noise.
 CheckedFlight flight_of(std::size_t records, double step, double begin) {
   CheckedFlight result;
