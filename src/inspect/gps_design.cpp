@@ -21,12 +21,13 @@ using namespace internal;
 
 namespace {
 
-/// The error of delta-p by some of the coefficients about their mean effect, hPa, rms.
-double error_about_mean(const Eigen::MatrixXd& defects, const Eigen::MatrixXd& covariance,
-                        const std::vector<Eigen::Index>& some) {
+/// The error of delta-p by some of the coefficients without its part that is proportional to `level`, hPa,
+/// rms.
+double error_beyond(const Eigen::VectorXd& level, const Eigen::MatrixXd& defects,
+                    const Eigen::MatrixXd& covariance, const std::vector<Eigen::Index>& some) {
   if (some.empty()) return nan;
   const Eigen::MatrixXd columns = defects(Eigen::all, some);
-  const Eigen::MatrixXd off = columns.rowwise() - columns.colwise().mean();
+  const Eigen::MatrixXd off = columns - level * (level.transpose() * columns) / level.squaredNorm();
   const Eigen::MatrixXd part = covariance(some, some);
   return std::sqrt((off * part).cwiseProduct(off).sum() / static_cast<double>(off.rows()));
 }
@@ -37,11 +38,13 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   std::vector<Eigen::Index> with_attack;
   std::vector<Eigen::Index> with_speed;
   std::vector<double> deviations;
+  std::optional<Eigen::Index> constant;
   for (const ModelEffect& effect : model.model.effects) {
     if (effect.is_formula()) return std::nullopt;
     const EffectInfo& info = *effect_named(effect.id);
     for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
       const Eigen::Index position = as_index(deviations.size());
+      if (effect.id == "static-constant") constant = position;
       const bool by_attack = effect.id == "static-alpha" || effect.id == "static-attack";
       (by_attack ? with_attack : with_speed).push_back(position);
       deviations.push_back(gps_prior_in_typical_sizes * std::abs(info.parameters[p].typical));
@@ -80,13 +83,16 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   const Eigen::MatrixXd covariance =
       information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
   const Eigen::RowVectorXd mean = defects.colwise().mean();
+  // Heights do not determine a delta-p proportional to the pressure: it belongs to the level.
+  const Eigen::VectorXd level =
+      constant ? Eigen::VectorXd(defects.col(*constant)) : Eigen::VectorXd::Ones(defects.rows());
   design.level = std::sqrt(mean * covariance.topLeftCorner(count, count) * mean.transpose());
   // A direction is undetermined if the flight hardly reduces its prior error, or if it varies too little.
   constexpr double learnt = 0.5;
   const Eigen::MatrixXd prior = variances.head(count).asDiagonal();
   const auto error_of = [&](const std::vector<Eigen::Index>& with) {
-    const double error = error_about_mean(defects, covariance, with);
-    return error > learnt * error_about_mean(defects, prior, with) ? infinity : error;
+    const double error = error_beyond(level, defects, covariance, with);
+    return error > learnt * error_beyond(level, defects, prior, with) ? infinity : error;
   };
   design.slope = error_of(with_speed);
   design.attack = error_of(with_attack);

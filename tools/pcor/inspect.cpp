@@ -245,7 +245,9 @@ void print_by_gps(const GpsDesign& gps) {
       gps.by_wind && gps.by_height ? "wind and height"
       : gps.by_wind                ? "wind"
                                    : "height",
-      text(gps.level, "circles or reverse headings"), text(gps.slope, "a speed run"),
+      text(gps.level, gps.by_wind ? "circles or reverse headings"
+                                  : "a recorded ground velocity, and circles or reverse headings"),
+      text(gps.slope, "a speed run"),
       std::isnan(gps.attack) ? "" : ", change with attack " + text(gps.attack, "a pitch manoeuvre"));
 }
 

@@ -21,7 +21,7 @@ namespace pcor {
 /// How well the manoeuvres of a flight determine delta-p by GPS: standard errors, hPa.
 struct GpsDesign {
   double level = 0.0;   ///< mean over the flight
-  double slope = 0.0;   ///< change with the airspeed, rms over the flight
+  double slope = 0.0;   ///< change with the airspeed at one static pressure, rms over the flight
   double attack = 0.0;  ///< change with the attack, rms over the flight; NaN without that term
   bool by_wind = false;
   bool by_height = false;
