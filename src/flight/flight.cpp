@@ -249,8 +249,9 @@ struct Flight::Implementation {
     const std::string shown = shortened(name);
     if (!alike.empty())
       file->refuse(Error::Code::variable,
-                   ": {} is not in this file; it has {}; change {} in the [variables] of the model", shown,
-                   fmt::format("{}", fmt::join(alike, ", ")), role);
+                   ": {} is not in this file; it has {}; if that is the same measurement, change {} in the "
+                   "[variables] of the model, or in --reference",
+                   shown, fmt::format("{}", fmt::join(alike, ", ")), role);
     if (fitting.empty())
       file->refuse(Error::Code::variable,
                    ": {} ({} of the model) is not in this file; it has no time series in {} or a unit that "

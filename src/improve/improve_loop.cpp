@@ -409,12 +409,18 @@ class ForwardSelection {
         candidates.push_back(candidate_of(finding, now));
     }
     if (names_causes() || !loop_.trace_variables) return candidates;
-    for (const EmpiricalPredictor& variable : now.unexplained.variables) {
-      if (variable.formula.empty() || has_effect(result_.fit.model, id_of_trace(variable.name))) continue;
-      candidates.push_back(candidate_of(variable, loop_.flights));
-      break;
-    }
+    if (const EmpiricalPredictor* const variable = predictor_with_formula(now.unexplained))
+      candidates.push_back(candidate_of(*variable, loop_.flights));
     return candidates;
+  }
+
+  /// The first predictor with a formula that is not in the model; nullptr if there is none.
+  const EmpiricalPredictor* predictor_with_formula(const Unexplained& unexplained) const {
+    for (const EmpiricalPredictor& variable : unexplained.variables) {
+      if (!variable.formula.empty() && !has_effect(result_.fit.model, id_of_trace(variable.name)))
+        return &variable;
+    }
+    return nullptr;
   }
 
   void stop_without_candidates() {
@@ -452,8 +458,10 @@ class ForwardSelection {
         about += fmt::format("; write {} = \"{}\" into [variables] of the model to test {}", unnamed.role,
                              unnamed.variable, unnamed.effect);
       } else {
-        about += loop_.trace_variables ? "; no further formula of this variable can be added"
-                                       : "; --trace-variables adds a formula of this variable";
+        const EmpiricalPredictor* const traced = predictor_with_formula(left);
+        about += loop_.trace_variables || traced == nullptr
+                     ? "; no formula of this variable can be added"
+                     : fmt::format("; --trace-variables adds a formula of {}", traced->name);
       }
     }
     stop(StopReason::unexplained,

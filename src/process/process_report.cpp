@@ -243,6 +243,14 @@ Report process_report(const std::vector<ProcessedFlight>& flights, const std::st
   Report report;
   report.title = title_of(flights);
   Outputs outputs(report, suffix);
+  const auto earlier = std::count_if(flights.begin(), flights.end(), [](const ProcessedFlight& flight) {
+    return flight.state == FlightState::up_to_date;
+  });
+  if (earlier > 0)
+    report.summary.push_back(fmt::format(
+        "{} of {} flights are up to date. Their warnings, counts, differences and shaded times are "
+        "in the report of the run that processed them.",
+        earlier, flights.size()));
   for (const ProcessedFlight& flight : flights) {
     if (flight.state != FlightState::unreadable) outputs.add(flight);
     for (const OutsideSpan& span : flight.summary.outside)

@@ -132,8 +132,8 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
   for (std::size_t i = 0; i < lift->out.size(); ++i)
     slow += lift->out[i] && samples.motion.airspeed[i] < min_airspeed ? 1 : 0;
   std::string note = fmt::format(
-      "{} samples are excluded by default (--max-flaps 100 includes them): flaps extended, inferred from the "
-      "lift; {}{}; flaps are not recorded; the angle of attack is {:.0f} % below its value with flaps "
+      "{} samples have extended flaps, inferred from the lift, and are used only with --max-flaps 100: {}{}; "
+      "flaps are not recorded; the angle of attack is {:.0f} % below its value with flaps "
       "retracted, scatter {:.1f} %",
       out, times_of(marked_segments(lift->out), samples.time),
       slow == 0 ? "" : fmt::format("; {} of them are below {:g} m/s", slow, min_airspeed),

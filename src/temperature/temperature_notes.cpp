@@ -55,16 +55,15 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     const bool is_in_model = has_effect(result.model, error.effect);
     const std::string by = with_error(error.change, error.standard_error);
     warnings.push_back(fmt::format(
-        "{}; this error was removed before fitting the thermometer, {}",
+        "{}; this error was removed before fitting the thermometer, {}; if a laser or a second system "
+        "confirms "
+        "the error, {}",
         is_in_model
-            ? fmt::format(
-                  "refit {} first: by GPS heights {} is too small by {}, which changes delta-p by {:.2f} hPa",
-                  error.effect, error.parameter, by, error.range)
-            : fmt::format(
-                  "add {0} (pcor add), then refit: by GPS heights delta-p lacks {1:.2f} hPa that varies "
-                  "like {0}; {2} = {3}",
-                  error.effect, error.range, error.parameter, by),
-        size_text(error)));
+            ? fmt::format("by GPS heights {} of {} is too small by {}, which changes delta-p by {:.2f} hPa",
+                          error.parameter, error.effect, by, error.range)
+            : fmt::format("by GPS heights delta-p lacks {1:.2f} hPa that varies like {0} ({2} = {3})",
+                          error.effect, error.range, error.parameter, by),
+        size_text(error), is_in_model ? "refit first" : "add the effect (pcor add) and refit"));
   }
   if (std::abs(result.humidity_change) > significant_ratio * result.humidity_error) {
     warnings.push_back(

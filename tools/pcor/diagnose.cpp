@@ -58,9 +58,10 @@ void print_finding(const Finding& finding) {
         utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"), evidence.regimes);
   }
   for (const Alias& alias : finding.aliases) {
-    const std::string size = alias.size_to_usual == 0.0 ? ""
-                                                        : fmt::format(", {:.2g} times its typical size",
-                                                                      std::abs(alias.size_to_usual));
+    const double typical = std::abs(alias.size_to_usual);
+    const std::string size =
+        typical == 0.0 ? ""
+                       : fmt::format(", {:.{}f} times its typical size", typical, typical < 10.0 ? 1 : 0);
     say("  not distinguishable from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
         estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
         alias.chi2_less < 0.0 ? "more" : "less", size);
@@ -157,12 +158,17 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
   const auto may_be_of_reference = [](const Finding& finding) { return finding.may_be_of_reference(); };
   const auto may_be_of_model = [](const Finding& finding) { return finding.may_be_of_model(); };
   if (!findings.empty() && std::all_of(findings.begin(), findings.end(), may_be_of_reference)) {
+    const std::vector<std::string>& given = options.comparison.references;
+    const bool has_third = std::any_of(given.begin(), given.end(), [](const std::string& reference) {
+      return reference == "lams" || reference == "wind" || reference == "height";
+    });
     return fmt::format("{}; the model is unchanged. To see it: {}",
                        std::none_of(findings.begin(), findings.end(), may_be_of_model)
                            ? "The effect belongs to the reference system"
+                       : has_third
+                           ? "The references do not show which of the two systems has the error"
                            : "The difference of two systems does not show which of them has the error: a "
-                             "further reference does "
-                             "(--reference lams, wind or height)",
+                             "further reference does (--reference lams, wind or height)",
                        compare);
   }
   const bool sure = (diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous) &&
