@@ -29,7 +29,7 @@ void serialize(Archive& archive, TestStatistic& number) {
 /// The members of `check_per_flight`.
 template <class Archive>
 void serialize(Archive& archive, CheckResult& check) {
-  archive(check.name, check.ran, check.reason, check.verdict, check.key);
+  archive(check.name, check.ran, check.reason, check.verdict, check.key, check.withheld);
 }
 
 namespace {

@@ -391,7 +391,8 @@ class BadInput(DiagnosisTest):
         flight = self.path / "flight.nc"
         shutil.copy(ONE, flight)
         with netCDF4.Dataset(flight, "a") as file:
-            file.renameVariable("PCAB", "CABIN")
+            file.renameVariable("PCAB", "P3")
+            file["P3"].delncattr("long_name")
         self.refuse_add("mine", "--formula", "k * cabin_pressure", "--flight", flight,
                         words=["'mine'", "'cabin_pressure'", "PCAB"])
 

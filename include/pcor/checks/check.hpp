@@ -133,7 +133,7 @@ void describe(const Checks& self, Field& field) {
 Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options = {});
 
-/// Results of the checks for each flight separately: name, ran, reason, verdict and key only.
+/// Results of the checks for each flight separately: name, ran, reason, verdict, key and withheld only.
 /// @throws Error as `check`
 std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
                                                        const std::optional<ModelDefinition>& model,
