@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <pcor/batch/batch.hpp>
-#include <pcor/numerics/line_fit.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
@@ -86,6 +84,7 @@ void find_heights(const Flight& flight, const ModelDefinition& model, FlightAir&
     air.height_variable.clear();
     height.values.clear();
   }
+  air.height_scale_problem = evidence.slope_problem(height.variable);
   mask(find_jumps(height.values, record_times(flight)), height.values);
   air.height = std::move(height.values);
   air.latitude = read_role(flight, model, Quantity::latitude).values;
@@ -139,47 +138,17 @@ FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const Mo
 }
 
 std::string height_problem(const FlightAir& air) {
-  // Key of the model that sets the unit of the height.
-  const auto unit_setting = [&air](const char* unit) {
-    return fmt::format(R"([variables] altitude = "{}" and [units] altitude = "{}" in the model)",
-                       air.height_variable, unit);
-  };
   if (air.height.empty() && !air.height_variable.empty())
-    return fmt::format("{} has no unit in the file; set it by {}, or add a units attribute to the file",
-                       air.height_variable, unit_setting("m"));
+    return fmt::format(
+        "{0} has no unit in the file; set [variables] altitude = \"{0}\" and [units] altitude = \"m\" in the "
+        "model, or add a units attribute to the file",
+        air.height_variable);
   if (air.height.empty())
     return "the flight records no GPS height (GGALT; [variables] altitude names another)";
   if (air.latitude.empty())
     return "the flight records no latitude (GGLAT, LATC; [variables] latitude names another), so gravity is "
            "not known";
-  std::vector<double> height(air.size(), nan);
-  for (std::size_t i = 0; i < air.size(); ++i) {
-    if (air.flying[i]) height[i] = air.geopotential_height[i];
-  }
-  const LineFit line = ordinary_fit(air.pressure_altitude, height);
-  constexpr double min_range = 300.0;  // m, minimum height range for a slope
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -lowest;
-  for (std::size_t i = 0; i < air.size(); ++i) {
-    if (std::isnan(height[i]) || std::isnan(air.pressure_altitude[i])) continue;
-    lowest = std::min(lowest, air.pressure_altitude[i]);
-    highest = std::max(highest, air.pressure_altitude[i]);
-  }
-  if (!(highest - lowest > min_range)) return "";
-  if (line.slope > 2.9 && line.slope < 3.7) {
-    return fmt::format(
-        "{}: values increase {:.2f} times as fast as the pressure altitude, so they are in feet; set {}, or "
-        "correct the units attribute in the file",
-        air.height_variable, line.slope, unit_setting("ft"));
-  }
-  // Real air is within 20 % of the standard atmosphere.
-  if (!(line.slope > 0.75 && line.slope < 1.25)) {
-    return fmt::format(
-        "{}: values increase {:.2f} times as fast as the pressure altitude, which is impossible in any "
-        "atmosphere; check both variables",
-        air.height_variable, line.slope);
-  }
-  return "";
+  return air.height_scale_problem;
 }
 
 }  // namespace pcor::internal

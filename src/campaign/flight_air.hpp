@@ -46,6 +46,7 @@ struct FlightAir {
 
   /// Name of the height; without `height`, a height without unit. Empty if the flight has no height.
   std::string height_variable;
+  std::string height_scale_problem{};       ///< `HeightEvidence::slope_problem`
   std::vector<double> height;               ///< GPS height, m
   std::vector<double> latitude;             ///< deg
   std::vector<double> geopotential_height;  ///< geopotential height by GPS, m
@@ -65,8 +66,8 @@ struct FlightAir {
   void serialize(Archive& archive) {
     archive(samples, flying, measured_static, measured_dynamic, static_defect, pressure, dynamic, mach,
             temperature, airspeed, gas_constant, attack, sideslip, attack_ratio, sideslip_ratio, laser,
-            height_variable, height, latitude, geopotential_height, pressure_altitude, d_value, east_speed,
-            north_speed, tail_wind, notes);
+            height_variable, height_scale_problem, height, latitude, geopotential_height, pressure_altitude,
+            d_value, east_speed, north_speed, tail_wind, notes);
   }
 
   std::size_t size() const { return flying.size(); }

@@ -229,6 +229,13 @@ class Look {
              evidence.scatter, "hPa",
              "not used as altitude, because it is not a GPS height: a fit to it would be circular"});
       }
+      if (const std::string problem = evidence.slope_problem(variable);
+          !problem.empty() && impossible_heights_.insert(variable).second) {
+        result_.problems.push_back({variable, "change of height impossible for the pressure",
+                                    fmt::format("{} to {}", utc_text(flight_.time().first),
+                                                utc_text(flight_.time().last, "%H:%M:%S")),
+                                    evidence.slope, "times the pressure altitude", problem});
+      }
       return evidence;
     };
     for (const std::string& name : family_.names_of(series)) {
@@ -560,6 +567,7 @@ class Look {
   const VariableNaming& family_;
   std::map<std::string, std::vector<RoleCandidate>> evidence_;
   std::set<std::string> pressure_altitudes_;
+  std::set<std::string> impossible_heights_;
   Inspection result_;
 };
 

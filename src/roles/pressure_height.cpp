@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/numerics/line_fit.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/median.hpp"
 #include "roles/recorded_series.hpp"
@@ -23,8 +25,28 @@ constexpr double same_scatter = 0.15;  // hPa, about 1.2 m: two readings of one 
 constexpr double same_bias = 1.0;      // hPa; by the weather it is 5 to 12 in four real flights
 constexpr double near_bias = 3.0;      // hPa: a pressure that is corrected departs so from the raw one
 constexpr double near_scatter = 2.0;   // hPa
+constexpr double min_climb = 300.0;    // m, minimum range of pressure altitude for a slope
+constexpr double feet_in_metre = 1.0 / 0.3048;
+
+/// Real air is within 20 % of the standard atmosphere.
+bool is_possible_slope(double slope) { return slope > 0.75 && slope < 1.25; }
 
 }  // namespace
+
+std::string HeightEvidence::slope_problem(const std::string& variable) const {
+  if (std::isnan(slope) || is_possible_slope(slope)) return "";
+  std::string problem =
+      fmt::format("{}: values increase {:.2f} times as fast as the pressure altitude, ", variable, slope);
+  for (const auto& [unit, factor] : {std::pair("ft", feet_in_metre), std::pair("m", 1.0 / feet_in_metre)}) {
+    if (is_possible_slope(slope / factor))
+      return problem +
+             fmt::format(
+                 R"(so they are in {0}; set [variables] altitude = "{1}" and [units] altitude = "{0}" )"
+                 "in the model, or correct the units attribute in the file",
+                 unit, variable);
+  }
+  return problem + "which is impossible in any atmosphere; check both variables";
+}
 
 HeightEvidence compare_height(const std::vector<double>& height, const std::vector<double>& pressure) {
   HeightEvidence evidence;
@@ -41,6 +63,14 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
   for (double& each : differences) each = std::abs(each - evidence.bias);
   evidence.scatter = deviation_of_median * median(std::move(differences));
   const auto [minimum, maximum] = std::minmax_element(pressures.begin(), pressures.end());
+  if (pressure_altitude(*minimum) - pressure_altitude(*maximum) > min_climb) {
+    std::vector<double> altitudes(std::min(height.size(), pressure.size()));
+    std::transform(pressure.begin(), pressure.begin() + static_cast<std::ptrdiff_t>(altitudes.size()),
+                   altitudes.begin(), pressure_altitude);
+    evidence.slope = ordinary_fit(altitudes, {height.begin(),
+                                              height.begin() + static_cast<std::ptrdiff_t>(altitudes.size())})
+                         .slope;
+  }
   // Both are recorded in steps; the gradient converts a step of height to one of pressure.
   const double middle = pressure_altitude(median(pressures));
   const double gradient = standard_pressure(middle) - standard_pressure(middle + 1.0);

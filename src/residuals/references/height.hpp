@@ -111,6 +111,8 @@ class HeightReference final : public ReferenceOfNeighbours<HeightOnSamples> {
                               "model, or use another reference",
                               flight.path().string(), height.variable, to_string(evidence)));
     }
+    if (const std::string problem = evidence.slope_problem(height.variable); !problem.empty())
+      throw Error(Error::Code::unit, flight.path().string() + ": " + problem);
     const std::vector<Jump> jumps = find_jumps(height.values, time);
     for (const Jump& jump : jumps)
       notes.push_back(format_jump(height.variable, jump, time) + ", which are excluded");
