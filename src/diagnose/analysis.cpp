@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "campaign/gps_rows.hpp"
@@ -22,6 +23,8 @@ constexpr int max_rounds = 4;
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s
+/// Maximum share of one held-out part: of a flight of a few minutes the rest would not determine a fit.
+constexpr double max_share_of_part = 0.8;
 
 }  // namespace
 
@@ -376,6 +379,10 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
       estimates.push_back(solution(whole - sums.products[part], rows - sums.counts[part], groups));
     return estimates;
   };
+  const auto [first, last] =
+      std::pair(sums.counts.begin() + held_out_parts, sums.counts.begin() + 2 * held_out_parts);
+  const bool has_parts =
+      *std::max_element(first, last) <= max_share_of_part * std::accumulate(first, last, 0.0);
   const std::vector<Eigen::VectorXd> estimates = estimates_from(0);
   std::vector<Eigen::VectorXd> least_squares = estimates_from(held_out_parts);
   for (Eigen::VectorXd& estimate : least_squares) estimate = coefficients(groups, estimate);
@@ -389,7 +396,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     }
     return squares;
   });
-  result.rms = rms_of_parts(least_squares);
+  result.rms = has_parts ? rms_of_parts(least_squares) : nan;
   return result;
 }
 

@@ -107,7 +107,7 @@ class Analysis {
   Eigen::VectorXd least_squares(const std::vector<std::size_t>& groups) const;
 
   /// Residual of base and groups on five-minute blocks that were excluded from their fit, one block in five
-  /// at a time.
+  /// at a time. The rms is NaN if one part has more than 80 % of the samples.
   HeldOut held_out(const std::vector<std::size_t>& groups) const;
 
   /// Most likely drift of a flight after columns with these coefficients, one value per record, hPa.

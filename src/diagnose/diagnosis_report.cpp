@@ -95,8 +95,9 @@ Info numbers_of(const Diagnosis& diagnosis) {
                {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"}};
   if (diagnosis.is_refitted)
     numbers.emplace_back("Residual, " + refitted_text(diagnosis), hpa(diagnosis.residual_rms) + " hPa rms");
-  numbers.emplace_back("Residual on five-minute parts that each of five fits excludes, without outliers",
-                       hpa(diagnosis.residual_rms_held_out) + " hPa rms");
+  if (std::isfinite(diagnosis.residual_rms_held_out))
+    numbers.emplace_back("Residual on five-minute parts that each of five fits excludes, without outliers",
+                         hpa(diagnosis.residual_rms_held_out) + " hPa rms");
   if (!diagnosis.findings.empty())
     numbers.emplace_back("Noise with all findings", hpa(diagnosis.noise_rms_with_findings) + " hPa rms");
   numbers.emplace_back("Effects tested", std::to_string(diagnosis.candidates));

@@ -21,6 +21,8 @@ namespace {
 
 // Tolerated growth of the fit's rms, because the fit weighs samples by their noise and ignores outliers.
 constexpr double fit_limit = 1.005;
+/// Factor on an rms of held-out samples, or of all, from which a model is worse than the input model.
+constexpr double much_worse = 1.02;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
 constexpr double negligible = 0.05;
 
@@ -144,7 +146,8 @@ class ForwardSelection {
     if (std::isnan(first.rms_holdout)) {
       throw Error(
           Error::Code::samples,
-          "no held-out sample is usable, so no step can be tested; give another flight with --holdout");
+          "no held-out sample is usable, so no step can be tested; give flights longer than 7 minutes, or "
+          "one with --holdout");
     }
     const std::string before =
         std::isnan(fit.rms_before) ? "" : fmt::format("{} before, ", shown(fit.rms_before));
@@ -340,6 +343,7 @@ class ForwardSelection {
     result_.worse = std::isnan(given.rms_before)  // the input model has no residual on these samples
                         ? why_worse(comparison_of(tried, 1, 3, loop_.has_holdout), "refitted")
                         : why_worse(given, "input");
+    if (result_.worse.empty()) result_.worse = why_worse_on_parts();
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
       std::vector<std::size_t> used = flight.fitted;
@@ -355,14 +359,24 @@ class ForwardSelection {
   std::string why_worse(const TrialComparison& whole, const char* before) const {
     // Gusts are in the residual of GPS: a better law need not make it smaller in the fit.
     if (loop_.is_by_gps && !loop_.has_holdout) return "";
-    constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
-    if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
+    if (!(growth > much_worse) && !(growth > fit_limit && whole.is_worse())) return "";
     return fmt::format(
         "{}: the rms of the best model is {:.4f} times the rms of the {} model (increase of chi2 {:.0f} +- "
         "{:.0f})",
         loop_.has_holdout ? "held-out samples" : "these flights", growth, before, -whole.gain,
         whole.gain_error);
+  }
+
+  /// The same on the held-out parts of the fitted flights, if the input model is not fitted to them.
+  std::string why_worse_on_parts() const {
+    if (loop_.has_holdout || loop_.is_by_gps || loop_.is_input_fitted) return "";
+    const double after = result_.steps.back().rms_holdout;
+    if (!(after > much_worse * result_.given_rms_train)) return "";
+    return fmt::format(
+        "held-out parts of these flights: the rms of the best model is {}, that of the input model, which is "
+        "not fitted to them, {}",
+        shown(after), shown(result_.given_rms_train));
   }
 
   void next_step() {

@@ -522,6 +522,19 @@ TEST_F(Improve, DegradedModelIsReportedAsWorse) {
   EXPECT_DOUBLE_EQ(improvement.given_rms_holdout, 1.25);
 }
 
+TEST_F(Improve, ModelWorseOnHeldOutPartsThanAnUnfittedInputIsReported) {
+  loop_.has_holdout = false;
+  Diagnosis silent = diagnosis(Verdict::silent);
+  for (const bool is_input_fitted : {true, false}) {
+    loop_.is_input_fitted = is_input_fitted;
+    for (const double held_out : {1.02, 1.03}) {
+      given_rms_ = 1.0;
+      silent.residual_rms_held_out = held_out * run({diagnosis(Verdict::silent)}).given_rms_train;
+      EXPECT_EQ(run({silent}).worse.empty(), is_input_fitted || held_out < 1.025) << held_out;
+    }
+  }
+}
+
 TEST_F(Improve, GivenModelWithoutResidualIsComparedByItsRefit) {
   given_rms_ = std::nan("");
   EXPECT_EQ(run({diagnosis(Verdict::silent)}).worse, "");
