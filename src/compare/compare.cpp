@@ -54,6 +54,16 @@ struct Pairing {
   std::size_t rank;  // position of the model in the order of names
 };
 
+/// Whether the reference reads the static pressure of the model.
+bool is_circular(const Pairing& pairing) {
+  const std::string own = pairing.compared->model.variable_of(Quantity::static_pressure);
+  if (own.empty() || !pairing.reference->is_static_pressure()) return false;
+  if (const ModelDefinition* const law = pairing.reference->model())
+    return law->variable_of(Quantity::static_pressure) == own;
+  const std::vector<std::string> variables = pairing.reference->variables();
+  return !variables.empty() && variables.front() == own;
+}
+
 /// All models that have one reference, in the order in which they are given.
 struct Field {
   std::string name;        // name of the reference
@@ -320,14 +330,12 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
   for (const Pairing& each : pairings) {
-    const ModelDefinition* const other =
-        each.reference->is_static_pressure() ? each.reference->model() : nullptr;
-    const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
-    if (other == nullptr || own.empty() || other->variable_of(Quantity::static_pressure) != own) continue;
-    result.notes.push_back(
-        warning_note(fmt::format("give a reference with another static pressure: {} uses {}, as the model "
-                                 "does; the residual of '{}' is the difference of two laws and tests neither",
-                                 each.reference->name(), own, each.compared->name)));
+    if (each.reference->model() == nullptr || !is_circular(each)) continue;
+    result.notes.push_back(warning_note(
+        fmt::format("give a reference with another static pressure: {} uses {}, as the model "
+                    "does; the residual of '{}' is the difference of two laws and does not test it",
+                    each.reference->name(), each.compared->model.variable_of(Quantity::static_pressure),
+                    each.compared->name)));
   }
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     add_variances(m, flights.share(), records, threads, parts);
@@ -339,6 +347,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     }
     result.models.push_back(comparison_of(pairings[m].compared->name, *pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
+    result.models.back().is_circular = is_circular(pairings[m]);
   }
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;

@@ -40,8 +40,14 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     if (!(lengths[k] > 0.0)) {
       throw Error(
           Error::Code::fit,
-          fmt::format("{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}",
-                      to_string(k), to_string(k)));
+          fmt::format(
+              "{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}{}",
+              to_string(k), to_string(k),
+              task.model.model.policy.minimum > -infinity
+                  ? fmt::format(", unless delta-p is at its minimum, {:g} hPa, because the reference is "
+                                "far below the model: see the bias by compare",
+                                task.model.model.policy.minimum)
+                  : ""));
     }
     if (!(length > lengths[k] / hopeless_condition)) {
       throw Error(

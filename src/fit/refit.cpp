@@ -38,18 +38,24 @@ void serialize(Archive& archive, FittedParameter& parameter) {
 
 namespace {
 
-/// @throws Error if a second static system reads the static pressure under test, or one computed from it in
-/// the first flight: its noise and its errors cancel, and the fit would copy the law of the second system.
+/// @throws Error if a static reference is the static pressure under test, or a second static system reads it
+/// or one computed from it in the first flight: its noise and its errors cancel, and the fit would copy the
+/// law of the second system.
 void require_other_pressures(const FlightSet& flights, const ModelDefinition& model,
                              const References& references) {
   const std::string own = model.variable_of(Quantity::static_pressure);
   const FlightSet first = flights.part(0, 1);
   const bool is_in_file = !first.path(0).empty();
   for (const std::shared_ptr<const Reference>& reference : references) {
-    if (own.empty() || !reference->is_static_pressure() || reference->model() == nullptr) continue;
-    const std::string other = reference->model()->variable_of(Quantity::static_pressure);
+    if (own.empty() || !reference->is_static_pressure()) continue;
+    const bool has_law = reference->model() != nullptr;
+    const std::vector<std::string> variables = reference->variables();
+    if (!has_law && variables.empty()) continue;
+    const std::string other =
+        has_law ? reference->model()->variable_of(Quantity::static_pressure) : variables.front();
+    // A pressure that the archive computed from the model's is a law, which a fit may copy.
     const std::vector<int> is_circular = first.share().of_each_flight<int>([&](std::size_t flight) {
-      return other == own || (is_in_file && is_computed_from(first[flight], other, own)) ? 1 : 0;
+      return other == own || (has_law && is_in_file && is_computed_from(first[flight], other, own)) ? 1 : 0;
     });
     if (is_circular.front() == 0) continue;
     throw Error(

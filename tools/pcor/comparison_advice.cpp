@@ -181,9 +181,8 @@ class NextStep {
           "--reference",
           best_.name);
     }
-    if (!(best_.all.rms > 0.0))
-      return fmt::format("The residual of {} is zero and tests nothing; give another --reference",
-                         best_.name);
+    if (!(best_.all.rms > 0.0) || best_.is_circular)
+      return fmt::format("The residual of {} does not test it; give another --reference", best_.name);
     const bool is_worst_close = is_close_to_noise(worst_);
     const bool is_beyond_refit =
         &worst_ != &best_ && !is_worst_close && !can_refit(compared_, worst_.reference);

@@ -141,6 +141,14 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
   const auto [detectable, tested] = detectable_at_usual_size(diagnosis);
   if (diagnosis.verdict == Verdict::silent && tested > 0 && detectable == 0)
     return "To test the model, add flights or a further reference. To see the residual: " + compare;
+  // A refit that decreases the rms by less than this share does not matter.
+  constexpr double negligible = 0.02;
+  if (diagnosis.verdict == Verdict::silent && diagnosis.is_refitted &&
+      diagnosis.residual_rms < (1.0 - negligible) * diagnosis.rms_given) {
+    return fmt::format(
+        "No effect is missing, but the coefficients do not fit. To refit them: {} refit {} -m {} -o {}",
+        program(), flights, model, output_file("fitted.toml", inputs_of(options)));
+  }
   if (diagnosis.verdict == Verdict::silent) {
     return "To apply the model: " + process_command(options.comparison.flights, diagnosed, options.model,
                                                     options.comparison.timestamp_alignment);

@@ -62,7 +62,8 @@ void describe(const LineFit& self, Field& field) {
 /// Comparison of one model with one reference over all flights.
 struct ModelComparison {
   std::string name;
-  std::string reference;  ///< see `Reference::name`
+  std::string reference;     ///< see `Reference::name`
+  bool is_circular = false;  ///< the reference reads the static pressure of the model
   Statistics all;
   /// 1 - sum of squared residuals / sum of squared deviations of the reference's delta-p from its mean; NaN
   /// for a reference that is not a static pressure.
