@@ -73,6 +73,15 @@ UserIntervals placed(const UserIntervals& user, double first_time, double last_t
   return result;
 }
 
+std::size_t count_outside(const UserIntervals& intervals, double first_time, double last_time) {
+  const UserIntervals moments = placed(intervals, first_time, last_time);
+  const auto count = [&](const auto& list) {
+    return std::count_if(list.begin(), list.end(),
+                         [&](const auto& each) { return each.end <= first_time || each.begin > last_time; });
+  };
+  return static_cast<std::size_t>(count(moments.add) + count(moments.veto) + count(moments.exclude));
+}
+
 std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double first_time,
                             double last_time) {
   const UserIntervals moments = placed(user, first_time, last_time);

@@ -320,8 +320,14 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   }
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {
+    const std::size_t outside = count_outside(*options.intervals, samples.time.front(), samples.time.back());
+    if (outside > 0)
+      samples.notes.push_back(warning_note(fmt::format(
+          "correct the file of intervals: {} of its intervals are outside this flight", outside)));
     samples.intervals =
         apply(*options.intervals, std::move(samples.intervals), samples.time.front(), samples.time.back());
+  } else if (options.intervals) {
+    samples.notes.push_back(fmt::format("the file of intervals is for {} only", options.intervals->flight));
   }
   return samples;
 }

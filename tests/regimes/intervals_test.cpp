@@ -40,6 +40,23 @@ auto IsRefusal(const std::string& position, const Names&... names) {
 
 std::optional<Error> refusal(const std::string& text) { return refusal_of_whole(format + text); }
 
+TEST(UserIntervals, CountsThoseOutsideTheFlight) {
+  const UserIntervals user = parse(R"([[exclude]]
+begin = "20:10:00"
+end = "20:11:00"
+reason = "iced"
+[[exclude]]
+begin = "23:30:00"
+end = "23:31:00"
+reason = "iced"
+[[veto]]
+begin = "20:59:00"
+end = "21:30:00"
+)");
+  EXPECT_EQ(count_outside(user, midnight + 20.0 * hour, midnight + 21.0 * hour), 1U);
+  EXPECT_EQ(count_outside(user, midnight + 20.0 * hour, midnight + 24.0 * hour), 0U);
+}
+
 // "level 1-3" and the like, in seconds.
 std::vector<std::string> in_words(const std::vector<Interval>& intervals) {
   std::vector<std::string> words;

@@ -215,6 +215,10 @@ struct UserIntervals {
   bool is_for(const std::filesystem::path& flight_file) const;
 };
 
+/// Number of intervals, of all kinds, that have no time in common with a flight from `first_time` to
+/// `last_time`.
+std::size_t count_outside(const UserIntervals& intervals, double first_time, double last_time);
+
 /// Reads the user's intervals from a TOML file:
 ///
 ///     format = "pcor-intervals/1"
