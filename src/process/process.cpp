@@ -61,6 +61,8 @@ constexpr auto prevent_delta_p = {Quality::static_pressure_missing,
 struct Input : ModelInput {
   std::vector<double> values{};  // values of one block
   RejectedCounts excluded{};     // total of all inputs
+  std::size_t present = 0;       // number of values that the loop read
+  double sum = 0.0;              // of these values
   std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
 };
 
@@ -115,6 +117,7 @@ class Processing {
       summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
     }
     for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
+    note_impossible_temperature();
     note_domain();
     return summary_;
   }
@@ -262,6 +265,13 @@ class Processing {
                             prevent_delta_p.end();
       if (prevents && summary_.flagged[i] > summary_.flagged[most]) most = i;
     }
+    // The reason of a missing flow angle is more specific.
+    for (std::size_t i = 0; i < quality_info.size(); ++i) {
+      if (quality_info[i].bit == Quality::impossible_radome_pressure &&
+          quality_info[most].bit == Quality::effect_input_missing &&
+          10 * summary_.flagged[i] > 9 * summary_.flagged[most])
+        most = i;
+    }
     if (const std::size_t count = summary_.flagged[most]; count > 0) {
       text += fmt::format("; most frequent reason: {}, {} ({} sample{})", quality_info[most].name,
                           quality_info[most].brief, count, count == 1 ? "" : "s");
@@ -272,8 +282,27 @@ class Processing {
       flight_.file().refuse(
           Error::Code::samples, ": {}; {}", text,
           frozen_texts_.empty()
-              ? "check the [variables] and [units] of the model with 'pcor inspect'"
+              ? "compare the [variables] and [units] of the model with the roles that 'pcor inspect' finds"
               : fmt::format("{}; --keep-frozen uses these readings", fmt::join(frozen_texts_, "; ")));
+    }
+  }
+
+  /// Warns of a thermometer whose temperature is mostly impossible, as in a wrong unit.
+  void note_impossible_temperature() {
+    const auto input = std::find_if(inputs_.begin(), inputs_.end(), [](const Input& each) {
+      return each.quantity == Quantity::recovery_temperature ||
+             each.quantity == Quantity::ambient_temperature;
+    });
+    if (input == inputs_.end() || 2 * input->present <= summary_.samples) return;
+    for (std::size_t i = 0; i < quality_info.size(); ++i) {
+      if (quality_info[i].bit != Quality::temperature_missing ||
+          2 * summary_.flagged[i] <= summary_.corrected)
+        continue;
+      const std::string_view role = info_of(input->quantity).name;
+      summary_.notes.push_back(warning_note(fmt::format(
+          "set the unit of {0} in [units] of the model, or name another variable: {1} samples have no "
+          "temperature, because that of {2} is impossible, {3:.0f} K on average",
+          role, summary_.flagged[i], input->variable, input->sum / static_cast<double>(input->present))));
     }
   }
 
@@ -389,11 +418,10 @@ class Processing {
       note("no uncertainty is given for LAMS-corrected samples: the model covariance does not apply to them");
     }
     using Q = Quantity;
-    if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
-        !states({EffectLocation::static_defect}, {})) {
-      note(
-          "refit the model or set static_defect in [uncertainty]: the uncertainties exclude the error of "
-          "delta-p");
+    if (options_.uncertainty == UncertaintyPart::random || !states_defect_error()) {
+      note("refit the model or set static_defect in [uncertainty]: {}",
+           states_defect_error() ? "the uncertainties exclude the error of delta-p"
+                                 : "pressures have no uncertainty, the others exclude the error of delta-p");
     }
     if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
         !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
@@ -518,10 +546,18 @@ class Processing {
     }
   }
 
-  /// An uncertainty is written only with its result.
+  /// An uncertainty is written only with its result, that of a pressure only with the error of delta-p.
   bool is_written(const OutputRow& row) const {
     if (!loop_->writes(row.quantity)) return false;
-    return row.uncertainty_of == Quantity::count || loop_->writes(row.uncertainty_of);
+    if (row.uncertainty_of == Quantity::count) return true;
+    const bool is_pressure = info_of(row.uncertainty_of).unit == "hPa";
+    return loop_->writes(row.uncertainty_of) && (!is_pressure || states_defect_error());
+  }
+
+  /// Whether an error of delta-p is stated, or uncertainties without it were requested.
+  bool states_defect_error() const {
+    return options_.uncertainty == UncertaintyPart::random || uncertainty_.static_defect > 0.0 ||
+           uncertainty_.static_defect_ratio > 0.0 || states({EffectLocation::static_defect}, {});
   }
 
   std::string uncertainty_comment() const {
@@ -641,6 +677,11 @@ class Processing {
       input.values.resize(samples);
       input.excluded +=
           flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
+      for (const double value : input.values) {
+        if (is_missing(value)) continue;
+        ++input.present;
+        input.sum += value;
+      }
     }
     std::vector<double> times(samples);
     flight_.read_sample_times(block, summary_.rate, times.data());
