@@ -815,6 +815,40 @@ TEST_F(Process, SamplesOutsideTheDomainHaveTheirTimes) {
   EXPECT_LT(unknown, 1200);
 }
 
+// With the thermometer alone the uncertainties of the pressures were zero.
+TEST_F(Process, PressuresHaveNoUncertaintyWithoutTheErrorOfDeltaP) {
+  write_flight(input_, 20, 1);
+  ModelDefinition model = lams_model();
+  model.uncertainty.roles[Quantity::recovery_temperature] = 0.3;
+  const std::vector<std::string> outputs = process_flight(input_, model, output_).outputs;
+  EXPECT_THAT(outputs, Contains("ATX_uncertainty"));
+  for (const char* const name : {"PCOR_uncertainty", "PSXC_uncertainty", "QCXC_uncertainty"})
+    EXPECT_THAT(outputs, testing::Not(Contains(name)));
+  model.uncertainty.static_defect = 0.1;
+  EXPECT_THAT(process_flight(input_, model, output_).outputs, Contains("PSXC_uncertainty"));
+}
+
+// Kelvin labelled degrees Celsius: the recovery temperature is possible, the ambient one is not.
+TEST_F(Process, ThermometerInAWrongUnitIsNamed) {
+  for (const double offset : {0.0, 273.15}) {
+    {
+      test::NetcdfMaker maker(input_);
+      maker.time(test::sequence(50000.0, 40));
+      for (const auto& [name, unit, level] : level_flight) {
+        const bool is_thermometer = std::string_view(name) == "TTRR";
+        maker.series(name, unit, std::vector<double>(40, level + (is_thermometer ? offset : 0.0)));
+      }
+    }
+    const Notes notes = process_flight(input_, law_model(), output_, steady()).notes;
+    EXPECT_EQ(std::any_of(notes.begin(), notes.end(),
+                          [](const Note& note) {
+                            return note.severity == Severity::warning &&
+                                   note.text.find("TTRR") != std::string::npos;
+                          }),
+              offset > 0.0);
+  }
+}
+
 TEST_F(Process, AdvisesIfTheModelStatesNoUncertainty) {
   write_flight(input_, 20, 1);
   EXPECT_THAT(process_flight(input_, lams_model(), output_).outputs,

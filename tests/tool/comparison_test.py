@@ -930,6 +930,11 @@ class BadInput(ComparisonTest):
                                        'parameters = { k = 0.0 }\nunit = "hPa"\n'))
         self.refused("refit", ONE, "-m", model, words=["mine.k", "--fix mine.k"])
 
+    def test_fit_to_the_pressure_under_test(self):
+        self.refused("refit", ONE, "-m", self.model(), "--reference", "pressure:PSFD", words=["pressure:PSFD", "circular"])
+        advice = self.run_tool("compare", ONE, "-m", self.model(), "--reference", "pressure:PSFD").stdout
+        self.assertNotIn(" refit ", advice)
+
     def test_no_free_coefficient(self):
         fixed = [word for name in LAW for word in ("--fix", name)]
         self.refused("refit", ONE, "-m", self.model(), *fixed, words=["no coefficient is free", "--free"])
