@@ -41,11 +41,11 @@ std::string_view kind_of(const toml::node& node);
 /// A key as messages call it: in quotes, with the title of its table.
 std::string called(const Entry& entry);
 
-/// Date or time written in TOML syntax in a text, such as 2011-11-02 or 20:10:00.5; nullopt if the text is
-/// not one.
+/// Date, time or both, written in TOML syntax in a text, such as 2011-11-02 or 20:10:00.5; nullopt if the
+/// text is not one.
 template <class Moment>
 std::optional<Moment> moment_in(std::string_view text) {
-  if (text.find_first_not_of("0123456789-:.") != std::string_view::npos) return {};
+  if (text.find_first_not_of("0123456789-:.+TZ") != std::string_view::npos) return {};
   try {
     return toml::parse("moment = " + std::string(text))["moment"].value<Moment>();
   } catch (const toml::parse_error&) {

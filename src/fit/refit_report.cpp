@@ -55,7 +55,7 @@ ReportTable coefficient_table(const RefitResult& fit) {
                                  : p.at_bound ? "bound"
                                               : number(p.standard_error)};
     if (fit.is_by_gps()) row.push_back(number(p.noise_error));
-    row.insert(row.end(), {number(p.jackknife_error), p.unit.empty() ? "not stated" : p.unit,
+    row.insert(row.end(), {number(p.jackknife_error), p.unit.empty() ? "see formula" : p.unit,
                            p.fitted ? std::to_string(p.stage) : ""});
     table.rows.push_back(std::move(row));
   }

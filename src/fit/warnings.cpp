@@ -112,9 +112,9 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   }
   if (!apart.empty()) {
     notes.push_back(fmt::format(
-        "use the larger of the jackknife error and the error by the noise model; they differ for {}; the "
-        "noise "
-        "model is wrong, or a few minutes dominate the fit (the jackknife leaves out one {} at a time)",
+        "use the larger of the jackknife error and the standard error: jackknife errors differ from errors "
+        "by noise alone (without misfit and calibration) for {}; the noise model is wrong, or a few minutes "
+        "dominate the fit (the jackknife leaves out one {} at a time)",
         apart, part));
   }
   return notes;

@@ -250,7 +250,7 @@ struct Flight::Implementation {
     if (!alike.empty())
       file->refuse(Error::Code::variable,
                    ": {} is not in this file; it has {}; if that is the same measurement, change {} in the "
-                   "[variables] of the model, or in --reference",
+                   "[variables] of the model that names it",
                    shown, fmt::format("{}", fmt::join(alike, ", ")), role);
     if (fitting.empty())
       file->refuse(Error::Code::variable,

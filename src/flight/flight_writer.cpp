@@ -128,6 +128,9 @@ struct FlightWriter::Implementation {
                           (description.history.empty() ? "written by pcor" : description.history);
     if (input) {
       if (copies) copies->copy_global_attributes();
+      for (const std::string& name :
+           copies ? std::vector<std::string>() : input->file().attribute_names(global))
+        put_text(global, name, input->file().text_attribute(global, name));
       put_text(global, "time_coverage_resolution", fmt::format("PT{:g}S", input->time().step));
       const std::string earlier = input->attribute("history");
       if (!earlier.empty()) history += "\n" + earlier;

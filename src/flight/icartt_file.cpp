@@ -23,6 +23,8 @@ namespace pcor::internal {
 namespace {
 
 constexpr int series_over_time = 1001;  // the file format index
+// Characters of a name in a comment "NAME: value", which becomes an attribute of a netCDF output.
+constexpr auto name_characters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
 
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -223,9 +225,8 @@ class IcarttFile::Reader {
     const int normal = count();
     for (int i = 0; i < normal; ++i) {
       const std::string line = next();
-      const std::size_t colon = line.find(':');
-      if (colon == std::string::npos || line.substr(0, colon).find_first_of(" ,") != std::string::npos)
-        continue;
+      const std::size_t colon = line.find_first_not_of(name_characters);
+      if (colon == std::string::npos || colon == 0 || line[colon] != ':' || line[0] == '_') continue;
       const std::string name = line.substr(0, colon);
       const std::string value = trimmed(line.substr(colon + 1));
       put(name, value);

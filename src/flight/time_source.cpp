@@ -88,13 +88,17 @@ struct Counting {
   std::string calendar;
 };
 
+std::string how_to_state(const FlightFile& file, const std::string& variable, const std::string& units) {
+  return "state its unit with ncatted -a " + shell_quote("units," + ncatted_name(variable) + ",o,c,") +
+         shell_quote(units) + " " + shell_path(file.path().string());
+}
+
 Counting counting_of(const FlightFile& file, int variable) {
-  const std::string name = file.variable_name(variable), path = file.path().string();
+  const std::string name = file.variable_name(variable);
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {file, name,
-          "state its unit with ncatted -a " + shell_quote("units," + ncatted_name(name) + ",o,c,") +
-              shell_quote("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
+          how_to_state(file, name, "seconds since " + day_of_flight + " 00:00:00 +0000") +
               (date ? "" : ", where DAY is its reference date as year-month-day"),
           usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
 }
@@ -164,14 +168,24 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
                      ": {} counts from the year {} in the calendar \"{}\", which differs from the standard "
                      "calendar; write the time in the standard calendar",
                      time.variable, year, time.calendar);
-  const auto refuse_time_of_day = [&time]() {
+  const std::size_t behind_date = since + 6 + static_cast<std::size_t>(letters);
+  const auto refuse_time_of_day = [&time, behind_date]() {
+    // The advice keeps the date and the time of day if only the zone is unknown.
+    std::size_t zone = time.units.find_first_not_of("0123456789:. ", behind_date + 1);
+    zone = time.units.find_last_not_of(' ', std::min(zone, time.units.size()) - 1) + 1;
+    const std::string of_day = time.units.substr(behind_date, zone - behind_date);
+    const bool is_known = zone < time.units.size() && is_time_of_day(of_day);
     time.file.refuse(
         Error::Code::time,
         ": {} counts in \"{}\", where what follows the date is not a time of day in UTC or with an "
         "offset in hours; {}",
-        time.variable, time.units, time.how_to_state);
+        time.variable, time.units,
+        is_known ? how_to_state(time.file, time.variable,
+                                time.units.substr(0, zone) + (of_day.empty() ? " 00:00:00" : "") + " +HHMM") +
+                       ", where +HHMM is the offset of its zone from UTC in hours and minutes"
+                 : time.how_to_state);
   };
-  if (!is_time_of_day(time.units.c_str() + since + 6 + letters)) refuse_time_of_day();
+  if (!is_time_of_day(time.units.c_str() + behind_date)) refuse_time_of_day();
   try {
     const UnitConversion epoch =
         UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});

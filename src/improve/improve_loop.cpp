@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include "diagnose/finding_page.hpp"
 #include "diagnose/findings.hpp"
@@ -444,13 +445,13 @@ class ForwardSelection {
       for (const HeldOutPart& part : now.held_out) {
         if (part.is_off()) off.push_back(part.text());
       }
+      const auto [detectable, all] = detectable_at_usual_size(now);
       return stop(
           StopReason::nothing_missing,
-          fmt::format(
-              "no missing effect is detectable on {} flights: {} effects were tested; the rms residual is {} "
-              "with a noise of {}{}{}",
-              off.empty() ? "these" : "the fitted", now.candidates, shown(now.rms_given),
-              shown(now.noise_rms), off.empty() ? "" : "; but ", fmt::join(off, "; ")));
+          fmt::format("no missing effect is detectable on {} flights: {} of {} effects would be detected at "
+                      "their usual size; the rms residual is {} with a noise of {}{}{}",
+                      off.empty() ? "these" : "the fitted", detectable, all, shown(now.rms_given),
+                      shown(now.noise_rms), off.empty() ? "" : "; but ", fmt::join(off, "; ")));
     }
     for (const Finding& finding : now.findings) {
       if (finding.may_be_of_reference()) {

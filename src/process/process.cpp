@@ -21,6 +21,7 @@
 #include <pcor/realtime/height_step.hpp>
 #include <pcor/realtime/loop.hpp>
 #include <pcor/regimes/regimes.hpp>
+#include "base/phrasing.hpp"
 #include "flight/flight_file.hpp"
 #include "model_io/archived_model.hpp"
 #include "model_io/output_table.hpp"
@@ -36,6 +37,7 @@
 #include "roles/find_frozen.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
+#include "roles/resolution.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -172,6 +174,7 @@ class Processing {
     std::vector<double> time;
     for (Input& input : inputs_) {
       const std::vector<double> values = read(input);
+      note_coarse(input.quantity, input.variable, values, summary_.notes);
       const std::vector<Segment> frozen =
           find_frozen(flight_, input.variable, input.quantity, values, flying);
       if (frozen.empty()) continue;
@@ -388,10 +391,10 @@ class Processing {
     const char* const what = part == UncertaintyPart::systematic
                                  ? "no standard error or covariance of a parameter"
                              : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
-                                                               : "no uncertainty";
+                                                               : "no noise, misfit, stderr or covariance";
     fail_model(
-        fmt::format("it states {}; run 'pcor refit' for the covariance, set the "
-                    "uncertainties of the sensors in [uncertainty], or omit --uncertainty",
+        fmt::format("it states {} (the calibration of a sensor alone does not suffice); run 'pcor refit' for "
+                    "the covariance, set the noise of the sensors in [uncertainty], or omit --uncertainty",
                     what));
   }
 
@@ -415,7 +418,7 @@ class Processing {
   void note_uncertainty() {
     if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
     if (options_.correct_with == CorrectWith::lams) {
-      note("no uncertainty is given for LAMS-corrected samples: the model covariance does not apply to them");
+      note("LAMS-corrected samples have an uncertainty of PCOR only: the model covariance does not apply");
     }
     using Q = Quantity;
     if (options_.uncertainty == UncertaintyPart::random || !states_defect_error()) {
@@ -423,25 +426,26 @@ class Processing {
            states_defect_error() ? "the uncertainties exclude the error of delta-p"
                                  : "pressures have no uncertainty, the others exclude the error of delta-p");
     }
-    if (!states({EffectLocation::static_transducer, EffectLocation::static_line}, {Q::static_pressure}) ||
-        !states({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
-                 EffectLocation::pitot},
-                {Q::dynamic_pressure})) {
-      note(
-          "set static_pressure and dynamic_pressure in [uncertainty]: the uncertainties exclude the pressure "
-          "transducers");
-    }
+    Names unstated;
+    const auto require = [&](std::initializer_list<EffectLocation> locations, Quantity role) {
+      if (!states(locations, {role})) unstated.emplace_back(info_of(role).name);
+    };
+    require({EffectLocation::static_transducer, EffectLocation::static_line}, Q::static_pressure);
+    require({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
+             EffectLocation::pitot},
+            Q::dynamic_pressure);
+    // The systematic error of a thermometer has a usual size.
+    if (chain_->has_temperature() && options_.uncertainty != UncertaintyPart::systematic)
+      require({}, file_.variables.count(Q::recovery_temperature) > 0 ? Q::recovery_temperature
+                                                                     : Q::ambient_temperature);
+    if (!unstated.empty())
+      note("set {} in [uncertainty]: the uncertainties exclude errors of these sensors", join_list(unstated));
     for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
       if (uncertainty_.calibration.empty()) break;
       const std::vector<std::string>& known = file_.covariance.parameters;
       if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
       note("set \"{}\" in [uncertainty] of the model: the uncertainties assume 0 +- {:g}, the usual size",
            doubt.name(), doubt.size);
-    }
-    if (chain_->has_temperature() && uncertainty_.calibration.empty() &&
-        !states({EffectLocation::temperature, EffectLocation::recovery, EffectLocation::ambient_temperature},
-                {Q::recovery_temperature, Q::ambient_temperature})) {
-      note("the uncertainties of temperature and airspeed exclude the thermometer");
     }
   }
 

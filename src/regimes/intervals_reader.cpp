@@ -125,18 +125,17 @@ class Reader final : TomlReader {
 
   // Seconds since 1970 UTC, or since midnight, which are less than a day.
   double time_of(const toml::node& node) const {
-    if (const auto* moment = node.as_date_time()) {
-      const toml::date_time& value = moment->get();
-      const double minutes_east = value.offset ? value.offset->minutes : 0;
-      const double seconds = seconds_of(value) - minutes_east * 60.0;
+    const std::string* const text = node.is_string() ? &node.as_string()->get() : nullptr;
+    const auto moment = text != nullptr ? moment_in<toml::date_time>(*text) : node.value<toml::date_time>();
+    if (moment) {
+      const double minutes_east = moment->offset ? moment->offset->minutes : 0;
+      const double seconds = seconds_of(*moment) - minutes_east * 60.0;
       if (seconds < day_length) fail(node, "the time is before 1970-01-02; correct the date");
       return seconds;
     }
     std::optional<toml::time> time = node.value<toml::time>();
-    if (node.is_string()) {
-      const std::string& text = node.as_string()->get();
-      time = moment_in<toml::time>(text.size() == 5 ? text + ":00" : text);  // "20:10" and "20:10:00.5"
-    }
+    if (text != nullptr)  // "20:10" and "20:10:00.5"
+      time = moment_in<toml::time>(text->size() == 5 ? *text + ":00" : *text);
     if (!time)
       fail(node,
            "the value is not a time; give a date and time such as 2011-11-17T20:10:00Z, or a time of the day "

@@ -30,7 +30,7 @@ Pointer read_lams(const std::string&, const ModelDefinition& model) {
     throw Error(
         Error::Code::model,
         fmt::format("model '{}' names no laser (lams_airspeed); give another --reference: static:OTHER.toml, "
-                    "pressure:PS, wind or height ('pcor inspect' lists them)",
+                    "pressure:PS, wind or height ('pcor inspect' proposes one)",
                     model.model.name));
   }
   return lams_reference();

@@ -156,18 +156,6 @@ ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& in
   return samples;
 }
 
-/// Notes pressures whose resolution is a considerable part of their noise.
-void note_coarse(const ModelSamples& samples, Notes& notes) {
-  for (const auto& [quantity, variable] : samples.variables) {
-    if (quantity != Quantity::static_pressure && quantity != Quantity::dynamic_pressure) continue;
-    const double step = resolution_of(*samples.find(quantity));
-    if (step < coarse_pressure) continue;
-    notes.push_back(fmt::format(
-        "{} is recorded in steps of {:.2g} hPa: rounding alone contributes {:.2g} hPa rms of noise", variable,
-        step, rounding_of(step)));
-  }
-}
-
 /// Airspeed along the beam, at the highest rate of a recorded pressure. Other derived inputs, rates of change
 /// and the time, are computed over the whole record.
 FastSeries read_along_beam(const Flight& flight, const ModelDefinition& model,
@@ -208,7 +196,9 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   const Chain chain = chain_of(model.model, roles);
   const std::vector<ModelInput> inputs = model_inputs(flight, model, chain, roles, notes);
   ModelSamples samples = read_inputs(flight, inputs, 1, notes);
-  note_coarse(samples, notes);
+  for (const auto& [quantity, variable] : samples.variables) {
+    if (const auto* const values = samples.find(quantity)) note_coarse(quantity, variable, *values, notes);
+  }
   const auto add = [&samples](Quantity quantity, std::vector<double> values) {
     samples.columns.emplace_back(quantity, std::move(values));
     samples.roles.push_back(quantity);

@@ -1,5 +1,7 @@
 #include "roles/resolution.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,6 +9,16 @@
 namespace pcor::internal {
 
 double rounding_of(double step) { return step / std::sqrt(12.0); }
+
+void note_coarse(Quantity quantity, const std::string& variable, const std::vector<double>& values,
+                 Notes& notes) {
+  if (quantity != Quantity::static_pressure && quantity != Quantity::dynamic_pressure) return;
+  const double step = resolution_of(values);
+  if (step < coarse_pressure) return;
+  notes.push_back(
+      fmt::format("{} is recorded in steps of {:.2g} hPa: rounding alone contributes {:.2g} hPa rms of noise",
+                  variable, step, rounding_of(step)));
+}
 
 double resolution_of(const std::vector<double>& values) {
   constexpr std::size_t min_values = 10;

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <string>
 #include <vector>
+
+#include <pcor/base/note.hpp>
+#include <pcor/model/quantity.hpp>
 
 namespace pcor::internal {
 
@@ -13,5 +17,9 @@ inline constexpr double coarse_pressure = 0.0999;
 
 /// Rms error of rounding to a step.
 double rounding_of(double step);
+
+/// Notes the rounding of a recorded pressure, hPa, whose resolution is a considerable part of its noise.
+void note_coarse(Quantity quantity, const std::string& variable, const std::vector<double>& values,
+                 Notes& notes);
 
 }  // namespace pcor::internal

@@ -339,6 +339,15 @@ TEST_F(FlightTest, TimeZoneMustBeUtcOrAnOffset) {
   }
 }
 
+TEST_F(FlightTest, AdviceOnAZoneKeepsTheTimeOfDay) {
+  for (const char* of_day : {" 14:22:00 MST", " 14:22:00 +25:00", " 14:22:00 +HHMM"}) {
+    { NetcdfMaker(path()).time({0, 1}, std::string("seconds since 2004-02-18") + of_day); }
+    EXPECT_THAT(refusal(), IsError(Error::Code::time, "'seconds since 2004-02-18 14:22:00 +HHMM'"));
+  }
+  { NetcdfMaker(path()).time({0, 1}, "hours since 2004-02-18 MST"); }
+  EXPECT_THAT(refusal(), IsError(Error::Code::time, "'hours since 2004-02-18 00:00:00 +HHMM'"));
+}
+
 TEST_F(FlightTest, FlightDateReplacesOnlyTheDate) {
   const auto make = [this](const std::string& units) {
     NetcdfMaker maker(path());

@@ -17,16 +17,20 @@ namespace pcor::internal {
 namespace {
 
 using test::values_of;
+using testing::AllOf;
 using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::IsNan;
+using testing::Not;
 
 const std::string head =
     "24, 1001, V02_2016\r\nDoe, Jane\nTheir laboratory\nN/A\nMISSION\n1, 1\n2018, 11, 04, 2019, 05, 13\n1\n"
     "Time_Start, seconds\n3\n1, 0.1, 1\n-9999, -9999, -9999\n"
     "static_pressure, hPa\ndynamic_pressure, hPa, Pressure_dynamic, dynamic pressure of the boom\nmach, N/A\n"
-    "1\na special comment\n6\nPLATFORM: N701BN\nLLOD_FLAG: -8888\nno comment of a name\nULOD_FLAG: -7777\n"
+    "1\na special comment\n6\nPLATFORM: N701BN\nLLOD_FLAG: -8888\nno/name: of an attribute\nULOD_FLAG: "
+    "-7777\n"
     "REVISION: R0\nTime_Start,static_pressure,dynamic_pressure,mach\n";
 
 class Icartt : public testing::Test {
@@ -64,6 +68,8 @@ TEST_F(Icartt, IsCopiedToNetcdf) {
   writer.finish();
   EXPECT_THAT(values_of(Flight(output), "static_pressure"), ElementsAre(850, IsNan(), 852.5));
   EXPECT_EQ(Flight(output).time().first, flight.time().first);
+  for (const char* name : {"institution", "project", "PLATFORM", "REVISION"})
+    EXPECT_THAT(Flight(output).attribute(name), AllOf(Not(IsEmpty()), flight.attribute(name)));
 }
 
 TEST_F(Icartt, ErrorNamesTheLine) {

@@ -151,7 +151,12 @@ std::vector<std::string> effects(const ModelDefinition& model) {
 }
 
 TEST_F(Improve, StopsIfNoEffectIsMissing) {
-  const Improvement improvement = run({diagnosis(Verdict::silent)});
+  Diagnosis silent = diagnosis(Verdict::silent);
+  silent.limits.resize(7);
+  for (UpperLimit& limit : silent.limits) limit.chi2_at_usual_size = silent.threshold + 1.0;
+  silent.limits[0].chi2_at_usual_size = 0.0;
+  const Improvement improvement = run({silent});
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("6 of 7")) << "diagnose prints the same numbers";
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
   EXPECT_EQ(improvement.steps[0].terms, 2U);

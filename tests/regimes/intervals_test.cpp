@@ -207,6 +207,8 @@ TEST(IntervalsFile, RefusesWrongTimes) {
   EXPECT_THAT(times("\"20:10\"", "\"20:09\""), IsRefusal("4:7", "'end'", "'begin'"));
   EXPECT_THAT(times("\"20:10\"", "\"20:10\""), IsRefusal("4:7", "'end'", "'begin'"));
   EXPECT_EQ(times("\"23:50\"", "\"00:10\""), std::nullopt);
+  EXPECT_EQ(times("\"2011-11-17T20:10:00Z\"", "2011-11-17T20:11:00Z"), std::nullopt);
+  EXPECT_THAT(times("2011-11-17T20:10:00Z", "\"2011-11-17T21:10:00+01:00\""), IsRefusal("4:7", "'end'"));
   EXPECT_THAT(times("\"20:10\"", "2011-11-17T20:11:00Z"), IsRefusal("4:7", "'end'", "'begin'"));
   EXPECT_THAT(times("\"25:00\"", "\"20:09\""), IsRefusal("3:9"));
   EXPECT_THAT(times("\"8:00\"", "\"20:09\""), IsRefusal("3:9"));

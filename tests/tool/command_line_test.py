@@ -213,6 +213,7 @@ class Hints(ComparisonTest):
         with netCDF4.Dataset(self.path / "0.nc") as named, netCDF4.Dataset(self.path / "1.nc") as given:
             self.assertTrue((named["PSFD"][:] == given["PSFD"][:]).all())
         self.refused("simulate", "c130-shortt", "-o", self.path / "2.nc", words=["c130-short"])
+        self.assertIn("outside the catalogue (unknown)", self.done("simulate", "c130-hidden", "-o", self.path / "3.nc").stdout)
 
     def test_each_command_prints_its_version(self):
         version = self.run_tool("--version").stdout
@@ -235,6 +236,10 @@ class Help(ComparisonTest):
             self.assertIn(len(examples), (1, 2, 3))
             for example in examples:
                 self.assertTrue(example.startswith(f"  {TOOL} {command}"), example)
+            self.assertNotIn("\n\n\n", text)
+
+    def test_reference_of_temperature_needs_iterate(self):
+        self.assertIn("with --iterate only", self.done("temperature", "--help").stdout)
 
     def test_old_names_work_and_print_the_new_names(self):
         second = comparison_test.OTHER_SYSTEM

@@ -109,6 +109,11 @@ class PageTest(unittest.TestCase):
                 (self.folder / "part.toml").write_text('format = "pcor-model/1"\nname = "part of a model"\n' + content.replace(
                     "[variables]\n", '[variables]\nstatic_pressure = "PSFD"\ndynamic_pressure = "QCF"\nrecovery_temperature = "TTRR"\n'))
                 self.run_command("pcor add static-qp -m part.toml -o extended.toml")
+        page = self.folder / "build/reference/output-variables.md"
+        if page.exists():
+            results = (SOURCE / "data/models/FORMAT.md").read_text().split("\n## [output]\n")[1].split("\n## ")[0]
+            pattern = r"(?m)^\| `(\w+)` \|"
+            self.assertEqual(re.findall(pattern, page.read_text()), re.findall(pattern, results))
 
 
 class Pages(PageTest):

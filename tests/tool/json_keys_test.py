@@ -70,7 +70,9 @@ class JsonKeys(unittest.TestCase):
         return done.stdout
 
     def check(self, command, *runs):
-        lines = self.run_tool(command, "--json-keys").splitlines()
+        keys, remark = self.run_tool(command, "--json-keys").split("\n\n")
+        self.assertIn("null", remark)
+        lines = keys.splitlines()
         starts = [lines[0].index(head) for head in ("key", "type", "unit", "meaning")]
         rows = [[line[start:end].strip() for start, end in zip(starts, [*starts[1:], None])] for line in lines[1:]]
         for path, kind, unit, meaning in rows:

@@ -183,8 +183,19 @@ class Usage(ToolTest):
 class Notes(ToolTest):
     def test_a_long_note_keeps_its_action(self):
         model = self.model(lambda toml: toml.replace("[[effect]]", "[uncertainty]\nstatic_defect = 0.1\n\n[[effect]]", 1))
-        note = next(line for line in self.process(self.flight(), model).stdout.splitlines() if "transducers" in line)
-        self.assertIn("[uncertainty]", note)
+        note = next(line for line in self.process(self.flight(), model).stdout.splitlines() if "these sensors" in line)
+        self.assertIn("set static_pressure, dynamic_pressure and recovery_temperature in [uncertainty]", note)
+
+    def test_calibration_of_a_sensor_states_no_uncertainty(self):
+        model = self.model(lambda toml: toml.replace("[[effect]]", '[uncertainty]\n"temp-offset.offset" = 0.3\n\n[[effect]]', 1))
+        result = self.process(self.flight(), model, None, "--uncertainty", "total")
+        self.assert_refused(result, "the calibration of a sensor alone does not suffice")
+
+    def test_coarse_pressure_is_reported(self):
+        def whole(values):
+            return [str(round(float(value))) for value in values]
+        result = self.process(self.flight(with_data("PSFD", whole)), None, None, "--verbose")
+        self.assertIn("PSFD is recorded in steps of 1 hPa: rounding alone contributes 0.29 hPa rms", result.stdout)
 
     def test_law_for_another_time_and_aircraft_is_reported(self):
         model = self.model(
@@ -232,7 +243,9 @@ class BadFlight(ToolTest):
 
     def test_missing_variable(self):
         flight = self.flight(lambda cdl: cdl.replace("QCR", "QCRX"))
-        self.assert_refused(self.process(flight), "QCR", "QCRX")
+        result = self.process(flight)
+        self.assert_refused(result, "QCR", "QCRX", "[variables]")
+        self.assertNotIn("--reference", result.stderr)
 
     def test_unknown_unit(self):
         flight = self.flight(replace(r'PSFD:units = "[^"]*"', 'PSFD:units = "bananas"'))

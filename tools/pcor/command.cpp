@@ -44,8 +44,7 @@ std::string key_table(const KeyLists& lists) {
   std::string text;
   for (const JsonKey& key : keys)
     text += fmt::format("{:<{}}  {:<13} {:<24} {}\n", key.path, width, key.type, key.unit, key.meaning);
-  text.pop_back();
-  return text;
+  return text + "\nA number that is unknown is null.";
 }
 
 }  // namespace

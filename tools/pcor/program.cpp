@@ -115,7 +115,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& help_or_version) {
     std::ostringstream text;
     program.exit(help_or_version, text, text);
-    say_text(text.str());
+    std::string printed = text.str();
+    // A hidden group of options leaves a second empty line.
+    for (std::size_t at = 0; (at = printed.find("\n\n\n")) != std::string::npos;) printed.erase(at, 1);
+    say_text(printed);
     return 0;
   } catch (const CLI::ParseError& error) {
     tell(usage_message(program, error.what(), words));

@@ -134,7 +134,8 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
     say("{:<36} {:>13.6g} {:>13.6g} {:>13} {}{:>13}  {}\n", p.name, p.start, p.value, error,
-        likelihood(number(p.noise_error)), number(p.jackknife_error), p.unit.empty() ? "not stated" : p.unit);
+        likelihood(number(p.noise_error)), number(p.jackknife_error),
+        p.unit.empty() ? "see formula" : p.unit);
   }
   if (omitted > 0) say("and {} more: add --verbose\n", omitted);
   for (const SurfaceFit& surface : result.surfaces) {

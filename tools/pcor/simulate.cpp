@@ -43,7 +43,10 @@ void print(const SimulationSummary& summary, const SimulateArguments& options) {
       utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.legs.size(),
       summary.seed);
   if (is_verbose()) print_legs(summary);
-  if (!summary.effects.empty()) say("simulated errors: {}\n", fmt::join(summary.effects, ", "));
+  std::vector<std::string> errors = summary.effects;
+  for (std::string& error : errors)
+    error = error == "unknown" ? "an effect outside the catalogue (unknown)" : error;
+  if (!errors.empty()) say("simulated errors: {}\n", fmt::join(errors, ", "));
   say("{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
       summary.variables.size(), options.output);
   say_written({options.common.json});

@@ -260,6 +260,8 @@ std::function<void()> add_temperature(CLI::App& program) {
       "the flights were written by 'pcor process --hydrostatic': start from their HYDSTEP and ATX");
   command->add_flag("--iterate", options->iterate,
                     "refit the pressures and calibrate the temperature alternately to convergence");
+  CLI::Option* const reference = command->get_option("--reference");
+  reference->description(reference->get_description() + "; with --iterate only");
   add_force_option(*command, options->temperature.dry_air);
   add_common_options<IterativeCalibration>(*command, options->common);
   add_examples(*command,

@@ -100,7 +100,8 @@ class HeightReference final : public ReferenceOfNeighbours<HeightOnSamples> {
       throw Error(Error::Code::variable,
                   flight.path().string() +
                       ": no GPS height and latitude with units (GGALT, GGLAT and the like), which the "
-                      "reference height requires; name them in the table [variables] of the model");
+                      "reference height requires; name them in the table [variables] of the model, or use "
+                      "another reference, for example --reference static:OTHER.toml");
     }
     const HeightEvidence evidence =
         height_evidence(flight, height.values, static_pressures_of(flight, file()));
