@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/median.hpp"
+#include "numerics/missing.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
 #include "roles/usual_variables.hpp"
@@ -37,14 +37,12 @@ std::string HeightEvidence::slope_problem(const std::string& variable) const {
   if (std::isnan(slope) || is_possible_slope(slope)) return "";
   std::string problem =
       fmt::format("{}: values increase {:.2f} times as fast as the pressure altitude, ", variable, slope);
-  for (const auto& [unit, factor] : {std::pair("ft", feet_in_metre), std::pair("m", 1.0 / feet_in_metre)}) {
-    if (is_possible_slope(slope / factor))
-      return problem +
-             fmt::format(
-                 R"(so they are in {0}; set [variables] altitude = "{1}" and [units] altitude = "{0}" )"
-                 "in the model, or correct the units attribute in the file",
-                 unit, variable);
-  }
+  const bool is_in_feet = is_possible_slope(slope / feet_in_metre);
+  if (is_in_feet || is_possible_slope(slope * feet_in_metre))
+    return problem +
+           fmt::format(R"(so they are in {0}; set [variables] altitude = "{1}" and [units] altitude = )"
+                       R"("{2}" in the model, or correct the units attribute in the file)",
+                       is_in_feet ? "feet" : "metres", variable, is_in_feet ? "ft" : "m");
   return problem + "which is impossible in any atmosphere; check both variables";
 }
 
@@ -89,6 +87,7 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
 HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
                                const std::vector<StatedPressure>& pressures) {
   HeightEvidence closest;
+  double slope = nan;  // with the first pressure
   for (const auto& [variable, unit] : pressures) {
     try {
       const QuantityInfo& info = info_of(Quantity::static_pressure);
@@ -96,6 +95,7 @@ HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& 
       HeightEvidence evidence =
           compare_height(height, read_values(flight, variable, believed(conversion, info)).values);
       evidence.pressure = variable;
+      if (closest.pressure.empty()) slope = evidence.slope;
       const bool is_closer = evidence.kind > closest.kind ||
                              (evidence.kind == closest.kind && evidence.scatter < closest.scatter);
       if (closest.pressure.empty() || is_closer) closest = std::move(evidence);
@@ -103,6 +103,7 @@ HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& 
       if (error.code() == Error::Code::file) throw;
     }
   }
+  closest.slope = slope;
   return closest;
 }
 

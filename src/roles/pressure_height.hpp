@@ -39,7 +39,8 @@ struct StatedPressure {
   std::string unit{};
 };
 
-/// Compares a height with several static pressures; returns the comparison that is closest.
+/// Compares a height with several static pressures; returns the comparison that is closest, with the slope
+/// for the first pressure.
 HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
                                const std::vector<StatedPressure>& pressures);
 
