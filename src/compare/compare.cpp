@@ -13,6 +13,7 @@
 #include <pcor/flight/flight_writer.hpp>
 
 #include "base/phrasing.hpp"
+#include "campaign/circular_pressure.hpp"
 #include "campaign/gps_system.hpp"
 #include "campaign/reference_doubt.hpp"
 #include "campaign/whitened.hpp"
@@ -53,16 +54,6 @@ struct Pairing {
   const Reference* reference;
   std::size_t rank;  // position of the model in the order of names
 };
-
-/// Whether the reference reads the static pressure of the model.
-bool is_circular(const Pairing& pairing) {
-  const std::string own = pairing.compared->model.variable_of(Quantity::static_pressure);
-  if (own.empty() || !pairing.reference->is_static_pressure()) return false;
-  if (const ModelDefinition* const law = pairing.reference->model())
-    return law->variable_of(Quantity::static_pressure) == own;
-  const std::vector<std::string> variables = pairing.reference->variables();
-  return !variables.empty() && variables.front() == own;
-}
 
 /// All models that have one reference, in the order in which they are given.
 struct Field {
@@ -330,7 +321,11 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
   for (const Pairing& each : pairings) {
-    if (each.reference->model() == nullptr || !is_circular(each)) continue;
+    const ModelDefinition* const law = each.reference->model();
+    const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
+    if (law == nullptr || own.empty() || law->variable_of(Quantity::static_pressure) != own ||
+        !each.reference->is_static_pressure())
+      continue;
     result.notes.push_back(warning_note(
         fmt::format("give a reference with another static pressure: {} uses {}, as the model "
                     "does; the residual of '{}' is the difference of two laws and does not test it",
@@ -347,7 +342,8 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     }
     result.models.push_back(comparison_of(pairings[m].compared->name, *pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
-    result.models.back().is_circular = is_circular(pairings[m]);
+    result.models.back().is_circular =
+        !circular_pressure(flights, pairings[m].compared->model, *pairings[m].reference).empty();
   }
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <functional>
 #include <utility>
+#include <variant>
 
 #include <pcor/base/error.hpp>
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/step_dates.hpp"
 #include "diagnose/unexplained.hpp"
 #include "diagnose/what_if_fit.hpp"
-#include "model_io/model_names.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
@@ -186,6 +186,19 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
   return "";
 }
 
+/// Whether the provenance of a model states a fit to one of the flights.
+bool is_fitted_to(const ModelDefinition& model, const FlightSet& flights) {
+  const auto* const fitted = find_entry<ProvenanceList>(model.provenance, "flights");
+  if (fitted == nullptr) return false;
+  for (const ProvenanceValue& each : *fitted) {
+    const auto* const name = std::get_if<std::string>(&each);
+    for (std::size_t f = 0; name != nullptr && f < flights.size(); ++f) {
+      if (*name == flights.name(f)) return true;
+    }
+  }
+  return false;
+}
+
 /// Formulas of the user, and those of the requested effects.
 std::vector<ModelEffect> formulas_with(std::vector<ModelEffect> formulas,
                                        const std::vector<WhatIfCandidate>& requested) {
@@ -306,9 +319,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   if (found.empty()) return result;
   WhatIfPanel& panel = result.panel;
   panel = panel_of(set, found, options.own, columns.flights.front().samples->flaps_variable);
-  std::vector<std::string> names;
-  for (std::size_t f = 0; f < files.size(); ++f) names.push_back(files.name(f));
-  panel.is_start_fitted = is_fitted_to(model, names);
+  panel.is_start_fitted = is_fitted_to(model, files);
   std::vector<std::size_t> are_found;
   for (std::size_t e = 0; e < found.size(); ++e) {
     result.effects.push_back(set.candidates[e].effect);

@@ -12,6 +12,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/roles/add_effects.hpp>
+#include "campaign/circular_pressure.hpp"
 #include "campaign/model_parameters.hpp"
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
@@ -23,7 +24,6 @@
 #include "fit/warnings.hpp"
 #include "numerics/missing.hpp"
 #include "parallel/workers.hpp"
-#include "roles/computed_from.hpp"
 
 namespace pcor {
 
@@ -44,20 +44,10 @@ namespace {
 void require_other_pressures(const FlightSet& flights, const ModelDefinition& model,
                              const References& references) {
   const std::string own = model.variable_of(Quantity::static_pressure);
-  const FlightSet first = flights.part(0, 1);
-  const bool is_in_file = !first.path(0).empty();
   for (const std::shared_ptr<const Reference>& reference : references) {
-    if (own.empty() || !reference->is_static_pressure()) continue;
-    const bool has_law = reference->model() != nullptr;
-    const std::vector<std::string> variables = reference->variables();
-    if (!has_law && variables.empty()) continue;
-    const std::string other =
-        has_law ? reference->model()->variable_of(Quantity::static_pressure) : variables.front();
+    const std::string other = circular_pressure(flights, model, *reference);
     // A pressure that the archive computed from the model's is a law, which a fit may copy.
-    const std::vector<int> is_circular = first.share().of_each_flight<int>([&](std::size_t flight) {
-      return other == own || (has_law && is_in_file && is_computed_from(first[flight], other, own)) ? 1 : 0;
-    });
-    if (is_circular.front() == 0) continue;
+    if (other.empty() || (reference->model() == nullptr && other != own)) continue;
     throw Error(
         Error::Code::usage,
         fmt::format("reference {}: its static pressure {} {} that of the model '{}', so a fit would be "

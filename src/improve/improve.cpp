@@ -13,7 +13,6 @@
 #include "fit/fitted_model.hpp"
 #include "improve/improve_loop.hpp"
 #include "improve/model_trials.hpp"
-#include "model_io/model_names.hpp"
 
 namespace pcor {
 
@@ -133,7 +132,6 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
       return offer_surface(flights, trial, ordered, refit_options_for(trial));
     };
   }
-  loop.is_input_fitted = is_fitted_to(model, names);
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;
   loop.max_steps = options.max_steps;

@@ -49,7 +49,6 @@ struct ImproveLoop {
   std::function<std::optional<SurfaceOffer>(const TrialModel& model)> offer_surface;
   bool has_holdout = false;     ///< the refit reports on held-out samples
   bool is_by_gps = false;       ///< the first reference is wind or height
-  bool is_input_fitted = true;  ///< the input model is fitted to one of the flights
   bool trace_variables = true;  ///< see `ImproveOptions`
   std::size_t max_steps = 8;    ///< maximum number of added effects
   std::string flights{};        ///< description for the source of a traced formula

@@ -92,7 +92,10 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
   const Eigen::MatrixXd prior = variances.head(count).asDiagonal();
   const auto error_of = [&](const std::vector<Eigen::Index>& with) {
     const double error = error_beyond(level, defects, covariance, with);
-    return error > learnt * error_beyond(level, defects, prior, with) ? infinity : error;
+    const double before = error_beyond(level, defects, prior, with);
+    // Columns proportional to the level have only rounding errors beyond it.
+    constexpr double rounding = 1e-9;  // hPa
+    return !(before > rounding) ? nan : error > learnt * before ? infinity : error;
   };
   design.slope = error_of(with_speed);
   design.attack = error_of(with_attack);

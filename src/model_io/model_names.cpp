@@ -1,7 +1,6 @@
 #include "model_io/model_names.hpp"
 
 #include <algorithm>
-#include <variant>
 
 namespace pcor::internal {
 
@@ -27,15 +26,6 @@ Quantity role_of_variable(const ModelDefinition& file, std::string_view name) {
   const auto found = std::find_if(file.variables.begin(), file.variables.end(),
                                   [name](const auto& entry) { return entry.second == name; });
   return found == file.variables.end() ? Quantity::count : found->first;
-}
-
-bool is_fitted_to(const ModelDefinition& model, const std::vector<std::string>& flights) {
-  const auto* const fitted = find_entry<ProvenanceList>(model.provenance, "flights");
-  return fitted != nullptr &&
-         std::any_of(fitted->begin(), fitted->end(), [&flights](const ProvenanceValue& each) {
-           const auto* const name = std::get_if<std::string>(&each);
-           return name != nullptr && std::find(flights.begin(), flights.end(), *name) != flights.end();
-         });
 }
 
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name) {

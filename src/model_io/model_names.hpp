@@ -34,9 +34,6 @@ const double* parameter_named(const Model& model, std::string_view name);
 /// for the name of a quantity or of another variable.
 Quantity role_of_variable(const ModelDefinition& file, std::string_view name);
 
-/// Whether the provenance of a model states a fit to one of these flights.
-bool is_fitted_to(const ModelDefinition& model, const std::vector<std::string>& flights);
-
 /// Published recovery factor with this name, or nullptr.
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);
 

@@ -63,8 +63,6 @@ constexpr auto prevent_delta_p = {Quality::static_pressure_missing,
 struct Input : ModelInput {
   std::vector<double> values{};  // values of one block
   RejectedCounts excluded{};     // total of all inputs
-  std::size_t present = 0;       // number of values that the loop read
-  double sum = 0.0;              // of these values
   std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
 };
 
@@ -290,23 +288,17 @@ class Processing {
     }
   }
 
-  /// Warns of a thermometer whose temperature is mostly impossible, as in a wrong unit.
+  /// Warns of a thermometer whose values give no possible temperature in most samples, as in a wrong unit.
   void note_impossible_temperature() {
-    const auto input = std::find_if(inputs_.begin(), inputs_.end(), [](const Input& each) {
-      return each.quantity == Quantity::recovery_temperature ||
-             each.quantity == Quantity::ambient_temperature;
-    });
-    if (input == inputs_.end() || 2 * input->present <= summary_.samples) return;
-    for (std::size_t i = 0; i < quality_info.size(); ++i) {
-      if (quality_info[i].bit != Quality::temperature_missing ||
-          2 * summary_.flagged[i] <= summary_.corrected)
-        continue;
-      const std::string_view role = info_of(input->quantity).name;
-      summary_.notes.push_back(warning_note(fmt::format(
-          "set the unit of {0} in [units] of the model, or name another variable: {1} samples have no "
-          "temperature, because that of {2} is impossible, {3:.0f} K on average",
-          role, summary_.flagged[i], input->variable, input->sum / static_cast<double>(input->present))));
-    }
+    if (2 * impossible_temperatures_ <= summary_.corrected) return;
+    const Quantity role = chain_->recorded(Quantity::recovery_temperature) ? Quantity::recovery_temperature
+                                                                           : Quantity::ambient_temperature;
+    summary_.notes.push_back(warning_note(
+        fmt::format("set the unit of {} in [units] of the model, or name another variable: {} of {} "
+                    "corrected samples have "
+                    "no possible temperature; {} is {:.0f} K in these samples on average",
+                    info_of(role).name, impossible_temperatures_, summary_.corrected, file_.variable_of(role),
+                    sum_of_impossible_ / static_cast<double>(impossible_temperatures_))));
   }
 
   /// Notes the samples in flight outside the domain of the law, known after the run.
@@ -421,11 +413,10 @@ class Processing {
       note("LAMS-corrected samples have an uncertainty of PCOR only: the model covariance does not apply");
     }
     using Q = Quantity;
-    if (options_.uncertainty == UncertaintyPart::random || !states_defect_error()) {
-      note("refit the model or set static_defect in [uncertainty]: {}",
-           states_defect_error() ? "the uncertainties exclude the error of delta-p"
-                                 : "pressures have no uncertainty, the others exclude the error of delta-p");
-    }
+    if (!states_defect_error())
+      note(
+          "refit the model or set static_defect in [uncertainty]: pressures have no uncertainty, the others "
+          "exclude the error of delta-p");
     Names unstated;
     const auto require = [&](std::initializer_list<EffectLocation> locations, Quantity role) {
       if (!states(locations, {role})) unstated.emplace_back(info_of(role).name);
@@ -627,6 +618,13 @@ class Processing {
       }
     }
     QualityFlags quality = loop_->quality();
+    const double thermometer =
+        state[chain_->recorded(Quantity::recovery_temperature) ? Quantity::recovery_temperature
+                                                               : Quantity::ambient_temperature];
+    if (!is_missing(defect) && !is_missing(thermometer) && quality.has(Quality::temperature_missing)) {
+      ++impossible_temperatures_;
+      sum_of_impossible_ += thermometer;
+    }
     const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
     if (chain_->is_outside_domain(state) &&
         state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
@@ -681,11 +679,6 @@ class Processing {
       input.values.resize(samples);
       input.excluded +=
           flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
-      for (const double value : input.values) {
-        if (is_missing(value)) continue;
-        ++input.present;
-        input.sum += value;
-      }
     }
     std::vector<double> times(samples);
     flight_.read_sample_times(block, summary_.rate, times.data());
@@ -718,12 +711,14 @@ class Processing {
   std::optional<DelayLine> filtered_;      // later still; and the quality bits, one of which is the filter's
   double sample_step_ = 1.0;               // s
   std::vector<std::string> frozen_texts_;  // one for each frozen sensor
-  std::vector<bool> frozen_;               // records in which any sensor is frozen; empty: none
-  std::vector<bool> flaps_;                // records outside the law by extended flaps; empty: none
-  std::vector<bool> outside_;              // records in flight outside the domain of the law; empty: none
-  bool did_not_fly_ = false;               // the dynamic pressure stays below that of flight
-  std::size_t noted_ = 0;                  // samples of which results are available
-  std::map<Quantity, std::string> names_;  // names of inputs and results in the output
+  std::size_t impossible_temperatures_ = 0;  // corrected samples whose thermometer gives no temperature
+  double sum_of_impossible_ = 0.0;           // of the thermometer in these samples, K
+  std::vector<bool> frozen_;                 // records in which any sensor is frozen; empty: none
+  std::vector<bool> flaps_;                  // records outside the law by extended flaps; empty: none
+  std::vector<bool> outside_;                // records in flight outside the domain of the law; empty: none
+  bool did_not_fly_ = false;                 // the dynamic pressure stays below that of flight
+  std::size_t noted_ = 0;                    // samples of which results are available
+  std::map<Quantity, std::string> names_;    // names of inputs and results in the output
   ProcessSummary summary_;
 };
 

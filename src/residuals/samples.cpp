@@ -311,9 +311,10 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {
     const std::size_t outside = count_outside(*options.intervals, samples.time.front(), samples.time.back());
+    std::string note = fmt::format("{} of the intervals of the file are outside this flight", outside);
+    // A file for several flights may have intervals for each.
     if (outside > 0)
-      samples.notes.push_back(warning_note(fmt::format(
-          "correct the file of intervals: {} of its intervals are outside this flight", outside)));
+      samples.notes.push_back(options.intervals->flight.empty() ? Note(std::move(note)) : warning_note(note));
     samples.intervals =
         apply(*options.intervals, std::move(samples.intervals), samples.time.front(), samples.time.back());
   } else if (options.intervals) {

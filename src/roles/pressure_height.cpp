@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <pcor/base/error.hpp>
-#include <pcor/numerics/line_fit.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -31,6 +31,30 @@ constexpr double feet_in_metre = 1.0 / 0.3048;
 /// Real air is within 20 % of the standard atmosphere.
 bool is_possible_slope(double slope) { return slope > 0.75 && slope < 1.25; }
 
+/// Change of the height with the pressure altitude between the medians of the lowest and of the highest fifth
+/// of the pressure altitudes, which spikes and jumps hardly change. NaN if these medians differ by less than
+/// 300 m.
+double slope_of(const std::vector<double>& heights, const std::vector<double>& pressures) {
+  std::vector<std::pair<double, double>> pairs;  // pressure altitude and height
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    pairs.emplace_back(pressure_altitude(pressures[i]), heights[i]);
+  std::sort(pairs.begin(), pairs.end());
+  const auto fifth = static_cast<std::ptrdiff_t>(pairs.size() / 5);
+  const auto medians = [](auto first, auto last) {
+    std::vector<double> altitudes;
+    std::vector<double> values;
+    for (; first != last; ++first) {
+      altitudes.push_back(first->first);
+      values.push_back(first->second);
+    }
+    return std::pair(median(std::move(altitudes)), median(std::move(values)));
+  };
+  const auto low = medians(pairs.begin(), pairs.begin() + fifth);
+  const auto high = medians(pairs.end() - fifth, pairs.end());
+  const double climb = high.first - low.first;
+  return climb > min_climb ? (high.second - low.second) / climb : nan;
+}
+
 }  // namespace
 
 std::string HeightEvidence::slope_problem(const std::string& variable) const {
@@ -50,25 +74,20 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
   HeightEvidence evidence;
   std::vector<double> differences;
   std::vector<double> pressures;
+  std::vector<double> heights;
   for (std::size_t i = 0; i < std::min(height.size(), pressure.size()); ++i) {
     const double difference = standard_pressure(height[i]) - pressure[i];
     if (!std::isfinite(difference)) continue;
     differences.push_back(difference);
     pressures.push_back(pressure[i]);
+    heights.push_back(height[i]);
   }
   if (differences.size() < min_values) return evidence;
   evidence.bias = median(differences);
   for (double& each : differences) each = std::abs(each - evidence.bias);
   evidence.scatter = deviation_of_median * median(std::move(differences));
   const auto [minimum, maximum] = std::minmax_element(pressures.begin(), pressures.end());
-  if (pressure_altitude(*minimum) - pressure_altitude(*maximum) > min_climb) {
-    std::vector<double> altitudes(std::min(height.size(), pressure.size()));
-    std::transform(pressure.begin(), pressure.begin() + static_cast<std::ptrdiff_t>(altitudes.size()),
-                   altitudes.begin(), pressure_altitude);
-    evidence.slope = ordinary_fit(altitudes, {height.begin(),
-                                              height.begin() + static_cast<std::ptrdiff_t>(altitudes.size())})
-                         .slope;
-  }
+  evidence.slope = slope_of(heights, pressures);
   // Both are recorded in steps; the gradient converts a step of height to one of pressure.
   const double middle = pressure_altitude(median(pressures));
   const double gradient = standard_pressure(middle) - standard_pressure(middle + 1.0);

@@ -20,8 +20,8 @@ struct HeightEvidence {
   std::string pressure{};  ///< the closest static pressure; empty without a static pressure
   double bias = 0.0;       ///< hPa, the median of the pressure of the height less that pressure
   double scatter = 0.0;    ///< hPa, about the median, robust
-  /// Change of the height with the pressure altitude of that pressure: within 20 % of 1 in real air. NaN if
-  /// the pressure altitude varies by less than 300 m.
+  /// Change of the height with the pressure altitude of the first pressure: within 20 % of 1 in real air. NaN
+  /// if a fifth of the flight is not 300 m above another fifth.
   double slope = std::numeric_limits<double>::quiet_NaN();
 
   /// Why no atmosphere has this slope, and what to do, for the height of a variable; empty if it is possible.

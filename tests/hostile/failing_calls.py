@@ -62,7 +62,9 @@ class Command:
         stopped = kind == "stop" and done.returncode == -signal.SIGTERM
         if done.returncode not in (0, 1) and not stopped_by_library and not stopped:
             wrong.append(f"exit status {done.returncode}")
-        if done.returncode == 1 and (message.count("pcor: ") != 1 or not NAMED.search(message)):
+        # An assertion of a library names the program, too.
+        own = [line for line in message.splitlines() if line.startswith("pcor: ") and "Assertion" not in line]
+        if done.returncode == 1 and (len(own) != 1 or not NAMED.search(message)):
             wrong.append(f"message {message!r}")
         if done.returncode == 0 and message:
             wrong.append(f"success with the message {message!r}")

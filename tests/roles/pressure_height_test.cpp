@@ -53,6 +53,16 @@ TEST(PressureHeight, SlopeShowsAWrongUnit) {
   EXPECT_EQ(problem_of_scaled(2.0), "");
 }
 
+TEST(PressureHeight, SpikesOfThePressureDoNotDetermineTheSlope) {
+  std::vector<double> height;
+  std::vector<double> pressure;
+  for (int i = 0; i < 900; ++i) {
+    height.push_back(2000.0 + i % 10);
+    pressure.push_back(i % 100 == 0 ? 700.0 : standard_pressure(height.back()) + 5.0);
+  }
+  EXPECT_EQ(compare_height(height, pressure).slope_problem("GGALT"), "");
+}
+
 TEST(PressureHeight, CancellingPressureAndTemperatureAreUndecided) {
   std::vector<double> height;
   // A low of 5 hPa subtracts 45 m, warm air adds 30 to 60 m: 0.6 hPa remain, with a scatter of 1.0 hPa.

@@ -73,10 +73,12 @@ void print_findings(const std::vector<Finding>& findings) {
   if (findings.empty()) return;
   say("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect", "coefficient",
       "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
+  const auto held_out = [](double rms) { return std::isnan(rms) ? "-" : fmt::format("{:.4f}", rms); };
   for (const Finding& finding : findings) {
-    say("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n", finding.id(),
+    say("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9} {:>9} {:>7.0f}\n", finding.id(),
         estimates_text(finding.estimates), finding.largest_rms, finding.worst, finding.chi2,
-        probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
+        probability(finding.p_value), held_out(finding.rms_before), held_out(finding.rms_after),
+        finding.events);
   }
   say("before and after: rms, hPa, on held-out parts of the flights; events: separate times that support the "
       "effect\n");
@@ -144,9 +146,10 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
   // A refit that decreases the rms by less than this share does not matter.
   constexpr double negligible = 0.02;
   if (diagnosis.verdict == Verdict::silent && diagnosis.is_refitted &&
-      diagnosis.residual_rms < (1.0 - negligible) * diagnosis.rms_given) {
+      diagnosis.residual_rms_held_out < (1.0 - negligible) * diagnosis.rms_given) {
     return fmt::format(
-        "No effect is missing, but the coefficients do not fit. To refit them: {} refit {} -m {} -o {}",
+        "No missing effect was detected, but a refit decreases the rms on held-out parts: {} refit {} -m {} "
+        "-o {}",
         program(), flights, model, output_file("fitted.toml", inputs_of(options)));
   }
   if (diagnosis.verdict == Verdict::silent) {

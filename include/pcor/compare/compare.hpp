@@ -93,6 +93,7 @@ template <class Field>
 void describe(const ModelComparison& self, Field& field) {
   field("name", self.name, "name of the model");
   field("reference", self.reference, "reference");
+  field("circular", self.is_circular, "whether the reference reads the static pressure of the model");
   describe(self.all, field);
   field("rms_over_noise", self.all.rms_over_noise(), "rms residual divided by the rms noise");
   field("r2", self.r_squared, "fraction of the variance of delta-p of the reference that the model explains");
