@@ -93,6 +93,7 @@ class NextStep {
         compared_(compared(best_)) {}
 
   std::string text() const {
+    if (best_.is_circular && result_.comparison.further.empty()) return not_tested();
     switch (support_of(best_)) {
       case Support::supported:
         return to_apply();
@@ -151,6 +152,10 @@ class NextStep {
                : "";
   }
 
+  std::string not_tested() const {
+    return fmt::format("The residual of {} does not test it; give another --reference", best_.name);
+  }
+
   std::string to_apply() const {
     const std::string ratio = largest_ratio();
     return fmt::format("{}{}. To apply it: {}", choice(),
@@ -181,8 +186,7 @@ class NextStep {
           "--reference",
           best_.name);
     }
-    if (!(best_.all.rms > 0.0) || best_.is_circular)
-      return fmt::format("The residual of {} does not test it; give another --reference", best_.name);
+    if (!(best_.all.rms > 0.0)) return not_tested();
     const bool is_worst_close = is_close_to_noise(worst_);
     const bool is_beyond_refit =
         &worst_ != &best_ && !is_worst_close && !can_refit(compared_, worst_.reference);
