@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "parallel/flight_partition.hpp"
 #include "roles/computed_from.hpp"
 
 namespace pcor::internal {

@@ -24,9 +24,10 @@ namespace {
 constexpr double fit_limit = 1.005;
 /// Factor on an rms of held-out samples, or of all, from which a model is worse than the input model.
 constexpr double much_worse = 1.02;
-/// The same on held-out parts of the fitted flights: a fit to a part of a flight may be a few per cent worse
-/// on the rest by chance.
-constexpr double much_worse_on_parts = 1.05;
+/// The same on held-out parts of the fitted flights. On flights of an hour a right law, fitted to parts, is
+/// up to 1.17 times worse than its true coefficients by chance (tests/real); above 1.05 a warning is given.
+constexpr double much_worse_on_parts = 1.25;
+constexpr double worse_on_parts = 1.05;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
 constexpr double negligible = 0.05;
 
@@ -373,16 +374,20 @@ class ForwardSelection {
   }
 
   /// The same on the held-out parts of the fitted flights, if the fit follows them more closely than the
-  /// input model does.
-  std::string why_worse_on_parts() const {
+  /// input model does. A smaller increase is a note.
+  std::string why_worse_on_parts() {
     const double before = result_.given_rms_train;
-    if (loop_.has_holdout || loop_.is_by_gps || !(much_worse * result_.rms_train < before)) return "";
     const double after = result_.steps.back().rms_holdout;
-    if (!(after > much_worse_on_parts * before)) return "";
-    return fmt::format(
+    if (loop_.has_holdout || loop_.is_by_gps || !(much_worse * result_.rms_train < before) ||
+        !(after > worse_on_parts * before))
+      return "";
+    std::string why = fmt::format(
         "held-out parts of these flights: the rms of the best model is {}, that of the input model {}; the "
         "flights do not determine the coefficients",
         shown(after), shown(before));
+    if (after > much_worse_on_parts * before) return why;
+    notes_.push_back(warning_note("add flights: " + why));
+    return "";
   }
 
   void next_step() {

@@ -533,9 +533,9 @@ TEST_F(Improve, ModelThatFollowsTheFlightsButPredictsTheirPartsWorseIsReported) 
   for (const double given : {1.0, 1.1}) {  // the fit has 1.0
     given_rms_ = given;
     const double before = run({silent}).given_rms_train;
-    for (const double held_out : {1.04, 1.06}) {
+    for (const double held_out : {1.24, 1.26}) {
       silent.residual_rms_held_out = held_out * before;
-      EXPECT_EQ(run({silent}).worse.empty(), given == 1.0 || held_out < 1.05) << given << " " << held_out;
+      EXPECT_EQ(run({silent}).worse.empty(), given == 1.0 || held_out < 1.25) << given << " " << held_out;
     }
   }
 }
