@@ -320,17 +320,16 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   }
   result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
+  std::vector<bool> are_circular;
   for (const Pairing& each : pairings) {
-    const ModelDefinition* const law = each.reference->model();
     const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
-    if (law == nullptr || own.empty() || law->variable_of(Quantity::static_pressure) != own ||
-        !each.reference->is_static_pressure())
-      continue;
+    const std::string circular = circular_pressure(flights, each.compared->model, *each.reference);
+    are_circular.push_back(!circular.empty());
+    if (each.reference->model() == nullptr || circular.empty() || circular != own) continue;
     result.notes.push_back(warning_note(
         fmt::format("give a reference with another static pressure: {} uses {}, as the model "
                     "does; the residual of '{}' is the difference of two laws and does not test it",
-                    each.reference->name(), each.compared->model.variable_of(Quantity::static_pressure),
-                    each.compared->name)));
+                    each.reference->name(), own, each.compared->name)));
   }
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     add_variances(m, flights.share(), records, threads, parts);
@@ -342,8 +341,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     }
     result.models.push_back(comparison_of(pairings[m].compared->name, *pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
-    result.models.back().is_circular =
-        !circular_pressure(flights, pairings[m].compared->model, *pairings[m].reference).empty();
+    result.models.back().is_circular = are_circular[m];
   }
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;

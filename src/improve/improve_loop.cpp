@@ -24,8 +24,9 @@ namespace {
 constexpr double fit_limit = 1.005;
 /// Factor on an rms of held-out samples, or of all, from which a model is worse than the input model.
 constexpr double much_worse = 1.02;
-/// The same on held-out parts of the fitted flights. On flights of an hour a right law, fitted to parts, is
-/// up to 1.17 times worse than its true coefficients by chance (tests/real); above 1.05 a warning is given.
+/// Such a factor on held-out parts of the fitted flights. On flights of an hour a right law, fitted to parts,
+/// is up to 1.17 times worse than its true coefficients by chance (tests/real); above 1.05 a warning is
+/// given.
 constexpr double much_worse_on_parts = 1.25;
 constexpr double worse_on_parts = 1.05;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
@@ -373,8 +374,9 @@ class ForwardSelection {
         whole.gain_error);
   }
 
-  /// The same on the held-out parts of the fitted flights, if the fit follows them more closely than the
-  /// input model does. A smaller increase is a note.
+  /// Whether all steps together increased the residual of held-out parts of the fitted flights by a large
+  /// amount, although the fit follows these flights more closely than the input model. A smaller increase is
+  /// a note.
   std::string why_worse_on_parts() {
     const double before = result_.given_rms_train;
     const double after = result_.steps.back().rms_holdout;
@@ -382,7 +384,8 @@ class ForwardSelection {
         !(after > worse_on_parts * before))
       return "";
     std::string why = fmt::format(
-        "held-out parts of these flights: the rms of the best model is {}, that of the input model {}; the "
+        "held-out parts of these flights: the rms of the best model is {}, the rms of the input model {}; "
+        "the "
         "flights do not determine the coefficients",
         shown(after), shown(before));
     if (after > much_worse_on_parts * before) return why;
@@ -439,7 +442,7 @@ class ForwardSelection {
     return candidates;
   }
 
-  /// The first predictor with a formula that is not in the model; nullptr if there is none.
+  /// The first predictor with a formula that is not in the model; nullptr without such a predictor.
   const EmpiricalPredictor* predictor_with_formula(const Unexplained& unexplained) const {
     for (const EmpiricalPredictor& variable : unexplained.variables) {
       if (!variable.formula.empty() && !has_effect(result_.fit.model, id_of_trace(variable.name)))

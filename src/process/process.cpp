@@ -541,7 +541,7 @@ class Processing {
     }
   }
 
-  /// An uncertainty is written only with its result, that of a pressure only with the error of delta-p.
+  /// An uncertainty is written only with its result; for a pressure the error of delta-p must be stated, too.
   bool is_written(const OutputRow& row) const {
     if (!loop_->writes(row.quantity)) return false;
     if (row.uncertainty_of == Quantity::count) return true;
