@@ -568,17 +568,22 @@ void doubt_by_size(Diagnosis& diagnosis) {
 }
 
 void doubt_by_atmosphere(Diagnosis& diagnosis) {
+  constexpr double min_increase = 1.02;
   for (Finding& finding : diagnosis.findings) {
     const bool is_impossible = is_of_impossible_size(finding);
-    if (predicts_held_out_parts(finding) && !is_impossible) continue;
+    const bool is_worse = finding.rms_after > min_increase * finding.rms_before;
+    if (predicts_held_out_parts(finding) && !is_impossible && !is_worse) continue;
     finding.rival = "the atmosphere";
     diagnosis.notes.push_back(warning_note(fmt::format(
-        "confirm {} with a laser or a second system: variations of the atmosphere may be the cause{}; "
+        "confirm {} with a laser or a second system: variations of the atmosphere may be the cause{}{}; "
         "decrease of chi2 of held-out parts {:.0f} +- {:.0f}",
         finding.id(),
         is_impossible
             ? fmt::format("; its size is {} times the usual one", report::ratio_text(finding.times_usual))
             : "",
+        is_worse ? fmt::format("; the effect increases the held-out rms from {:.3f} to {:.3f} hPa",
+                               finding.rms_before, finding.rms_after)
+                 : "",
         finding.gain, finding.gain_error)));
   }
 }

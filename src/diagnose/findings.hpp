@@ -48,8 +48,9 @@ inline bool is_of_impossible_size(const Finding& finding) { return finding.times
 void doubt_by_size(Diagnosis& diagnosis);
 
 /// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
-/// clearly predict held-out parts may be one. So may a finding of an impossible size: a wind that depends on
-/// the place is the same in held-out parts.
+/// clearly predict held-out parts may be one. So may a finding that increases their rms: its evidence is in
+/// fast variations, which the filter of a receiver changes. So may a finding of an impossible size: a wind
+/// that depends on the place is the same in held-out parts.
 void doubt_by_atmosphere(Diagnosis& diagnosis);
 
 }  // namespace pcor::internal

@@ -43,6 +43,18 @@ TEST(DoubtByAtmosphere, EffectOfImpossibleSizeMayBeTheAtmosphereEvenIfItPredicts
   }
 }
 
+// A load factor of 4.4 +- 0.2 hPa per g by GPS heights of a real flight: the held-out rms increased from
+// 0.274 to 0.301 hPa.
+TEST(DoubtByAtmosphere, EffectThatIncreasesTheHeldOutRmsMayBeTheAtmosphere) {
+  for (const auto& [after, is_doubted] : {std::pair{0.301, true}, {0.278, false}}) {
+    Diagnosis diagnosis = with_finding("load-factor", 4.0, 400.0);
+    diagnosis.findings[0].rms_before = 0.274;
+    diagnosis.findings[0].rms_after = after;
+    pcor::internal::doubt_by_atmosphere(diagnosis);
+    EXPECT_EQ(diagnosis.findings[0].rival, is_doubted ? "the atmosphere" : "") << after;
+  }
+}
+
 TEST(DoubtBySize, KnownRivalIsKept) {
   Diagnosis diagnosis;
   diagnosis.findings.emplace_back().times_usual = 50.0;
