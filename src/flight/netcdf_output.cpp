@@ -25,14 +25,14 @@ NetcdfOutput::NetcdfOutput(const std::filesystem::path& path, const std::filesys
 
 Error NetcdfOutput::error_of(int status, const std::string& message) const {
   if (status == NC_EBADNAME || status == NC_EMAXNAME)
-    return Error(Error::Code::output, message + "; give it another name");
+    return {Error::Code::output, message + "; give it another name"};
   std::error_code code;
   const auto space = std::filesystem::space(std::filesystem::absolute(path()).parent_path(), code);
   constexpr std::uintmax_t little = 1 << 20;
   const bool full = status == ENOSPC || (!code && space.available < little);
-  if (!full) return Error(Error::Code::output, message + "; check the space and the permissions there");
-  return Error(Error::Code::output, message + (status == ENOSPC ? "" : " (the disk is full)") +
-                                        "; make room or choose another output");
+  if (!full) return {Error::Code::output, message + "; check the space and the permissions there"};
+  return {Error::Code::output,
+          message + (status == ENOSPC ? "" : " (the disk is full)") + "; make room or choose another output"};
 }
 
 bool NetcdfOutput::has_other_length(const std::string& dimension, std::size_t length) const {

@@ -221,7 +221,8 @@ class Processing {
         return;
       extended = flaps_extended(flight_, file_);
     } catch (const Error& error) {  // a variable that no result needs is damaged
-      note("records with extended flaps have no quality bit: {}", error.what());
+      summary_.notes.push_back(
+          warning_note(fmt::format("records with extended flaps have no quality bit: {}", error.what())));
       return;
     }
     if (!extended) {

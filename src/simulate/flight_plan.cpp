@@ -22,7 +22,7 @@ constexpr double hold_rate = 3.0;           // m/s, for the return to a height
 class Plan {
  public:
   explicit Plan(const Scenario& scenario)
-      : pilot_(scenario), commanded_height_(scenario.atmosphere.ground_height), commanded_speed_(0.0) {
+      : pilot_(scenario), commanded_height_(scenario.atmosphere.ground_height) {
     for (const Leg& leg : scenario.legs) {
       const std::size_t steps = pilot_.truth().size();
       fly(leg);
@@ -202,7 +202,7 @@ class Plan {
 
   Pilot pilot_;
   std::vector<LegSteps> legs_;
-  double commanded_height_, commanded_speed_, commanded_flaps_ = 0.0;
+  double commanded_height_, commanded_speed_ = 0.0, commanded_flaps_ = 0.0;
 };
 
 }  // namespace
