@@ -23,7 +23,7 @@ class Demo(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             result = subprocess.run([SOURCE / "tools/demo", flight, folder], env={**os.environ, "PCOR": str(TOOL)},
                                     capture_output=True, text=True)
-            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertEqual(result.returncode, "pressures unchanged" in result.stdout, result.stdout + result.stderr)
             made = {path.name for path in Path(folder).iterdir()}
         self.assertLessEqual({"corrected.nc", "model.toml", "inspect.html", "process.html"}, made)
         # One screen for each command and the summary.
@@ -31,7 +31,9 @@ class Demo(unittest.TestCase):
         return result.stdout
 
     def test_without_a_flight_the_first_line_announces_a_simulation(self):
-        self.assertIn("simulated", self.run_demo("").splitlines()[0])
+        output = self.run_demo("")
+        self.assertIn("simulated", output.splitlines()[0])
+        self.assertIn("the flight corrected with best.toml", output)
 
     def test_help_is_not_a_flight(self):
         result = subprocess.run([SOURCE / "tools/demo", "--help"], capture_output=True, text=True)
@@ -56,9 +58,12 @@ class Demo(unittest.TestCase):
             result = subprocess.run([SOURCE / "tools/demo", mine, folder], capture_output=True, text=True)
             self.assertEqual(result.returncode, 2)  # the flight is in the folder of the results
             self.assertTrue(mine.exists())
-            subprocess.run([SOURCE / "tools/demo", "", folder], env={**os.environ, "PCOR": "true"}, capture_output=True)
+            # A program that proposes no reference.
+            result = subprocess.run([SOURCE / "tools/demo", "", folder], env={**os.environ, "PCOR": "/bin/true"}, capture_output=True, text=True)
             self.assertTrue(mine.exists())
             self.assertFalse(old.exists())
+            self.assertEqual(result.returncode, 1)
+            self.assertNotIn("pcor refit", result.stdout)
 
     @unittest.skipUnless(FLIGHTS, "PCOR_FLIGHTS is not set")
     def test_real_flights_are_corrected(self):
