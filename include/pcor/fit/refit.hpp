@@ -171,8 +171,8 @@ inline constexpr std::string_view refit_estimator =
     "drift and from the misfit of the law.";
 inline constexpr std::string_view refit_estimator_of_gps =
     "Coefficients by maximum likelihood, with winds, D-value and errors of GPS and instruments as random "
-    "processes; errors from that likelihood or from the scatter of blocks of five minutes, the larger of "
-    "both.";
+    "processes; errors from that likelihood or from the scatter of blocks of five minutes: the one with the "
+    "larger error of delta-p.";
 
 struct RefitResult {
   ModelDefinition model;  ///< fitted model with coefficients, standard errors, covariance and provenance
