@@ -76,7 +76,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::outside_domain, "outside_domain", "outside the domain of the law, or flaps extended",
      "an input lies outside the domain of the law, a quantity of the domain is missing, the flaps are "
      "extended, the absolute delta-p of the model exceeds 0.6 q in flight, or the noise of an input exceeds "
-     "its possible range: no uncertainty"},
+     "its possible range: no uncertainty; or outside the envelope of a surface only: a larger uncertainty"},
     {Quality::after_gap, "after_gap", "near a gap: too few neighbours for rates of change",
      "near a gap, or missing inputs of an airspeed: effects of rates of change have too few neighbours; in "
      "real time also the first sample after a gap"},

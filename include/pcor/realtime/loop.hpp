@@ -154,8 +154,9 @@ class Loop {
   /// Runs all functors on the sample at `time`, in seconds. Drifts need the time since the first record. A
   /// sample that starts again (not the first, nor the first after `reset`) has the bit `after_gap`, or
   /// `uneven_samples` if its time does not increase, or it or the time before is not finite; with a delay
-  /// also `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is wrong, and
-  /// frozen sensors are not found.
+  /// also `awaiting_later_samples`. If many samples have such a bit, the rate of the loop is too high, and
+  /// frozen sensors are not found. Without a delay a rate that is too low sets no bit, and frozen sensors
+  /// are reported too early.
   void run(double time) noexcept {
     quality_.clear();
     double step = time - previous_time_;
