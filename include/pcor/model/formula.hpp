@@ -38,7 +38,8 @@ struct FormulaError {
 ///   `min(a, b)`, `max(a, b)`, `pow(a, b)` (the same as `a^b`).
 /// - `if(a < b, x, y)` is x where the comparison (`<`, `<=`, `>`, `>=`) holds and y where it does not.
 ///
-/// Arithmetic follows IEEE 754: outside its domain a function is NaN, a division by zero is infinite or NaN.
+/// Arithmetic follows IEEE 754: outside its domain a function is NaN, `log(0)` is -infinity, a division by
+/// zero is infinite or NaN.
 /// NaN always propagates: min, max and if are NaN if a compared value is NaN, a power if its base or exponent
 /// is NaN; only `x^0` with the number 0 is 1 for every x.
 class Formula {

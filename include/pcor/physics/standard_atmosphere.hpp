@@ -61,7 +61,7 @@ inline double standard_pressure(double height) {
 }
 
 /// Pressure altitude, m: the geopotential height at which the US Standard Atmosphere 1976 has the `pressure`,
-/// hPa. Domain: 1776.87 hPa (-5000 m) to 0.003734 hPa (84 852 m); outside it and for NaN, NaN.
+/// hPa. Domain: 1776.8697 hPa (-5000 m) to 0.003734 hPa (84 852 m); outside it and for NaN, NaN.
 inline double pressure_altitude(double pressure) {
   if (!(pressure > 0.0)) return std::numeric_limits<double>::quiet_NaN();
   std::size_t number = 0;

@@ -51,8 +51,8 @@ inline std::string fault_of(const ModelEffect& effect) {
 
 }  // namespace detail
 
-/// Fault of the numbers of a model that a model file could not have, and the next step; empty without a
-/// fault. Faults of its effects and their inputs: `ModelBinder`.
+/// Fault in the numbers of a model that was built in a program, and the next step; empty without a fault. The
+/// reader of model files refuses the same numbers. Faults of its effects and their inputs: `ModelBinder`.
 inline std::string fault_of(const Model& model) {
   using detail::text_of_number;
   for (auto effect = model.effects.begin(); effect != model.effects.end(); ++effect) {
