@@ -72,6 +72,7 @@ struct Spread {
 /// Differences from the original processing in flight, by the state of the flaps.
 struct FlapsDifferences {
   std::set<std::string> variables{};
+  std::vector<std::string> flights_without{};
   std::array<std::pair<const char*, Spread>, 3> by_flaps{
       {{"retracted", {}}, {"extended", {}}, {"unknown", {}}}};
 
@@ -120,7 +121,7 @@ class Outputs {
     for (std::size_t i = 0; i < difference.size(); ++i)
       difference[i] = columns_[static_column].values[first + i] - difference[i];
     append(columns_.back(), difference);
-    if (difference.empty()) return;
+    if (difference.empty()) return differences_.flights_without.push_back(report_.flight_names.back());
     differences_.variables.insert(own.variable);
     if (processed.state != FlightState::processed) return;  // its summary is empty
     for (std::size_t i = 0; i < difference.size(); ++i) {
@@ -158,7 +159,8 @@ ReportTable differences_table(const FlapsDifferences& differences) {
       {"flaps", "samples", "mean (hPa)", "scatter (hPa)"}};
   for (const auto& [flaps, spread] : differences.by_flaps) {
     if (spread.count > 0.0)
-      table.rows.push_back({flaps, fmt::format("{:.0f}", spread.count), fmt::format("{:+.3f}", spread.mean()),
+      table.rows.push_back({flaps, fmt::format("{:.0f}", spread.count),
+                            fmt::format("{:+.3f}", std::round(1e3 * spread.mean()) / 1e3 + 0.0),
                             fmt::format("{:.3f}", spread.scatter())});
   }
   return table;
@@ -179,8 +181,12 @@ void add_pictures(Report& report, const FlapsDifferences& differences) {
         "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
   add_if_present(report, TimePanel{"Difference from the original processing",
                                    fmt::format("Corrected static pressure minus {} of the input: 1 hPa is "
-                                               "about 8 m of height at the ground.",
-                                               fmt::join(differences.variables, ", ")),
+                                               "about 8 m of height at the ground.{}",
+                                               fmt::join(differences.variables, ", "),
+                                               differences.flights_without.empty()
+                                                   ? ""
+                                                   : " Flights without this variable: " +
+                                                         join_list(differences.flights_without) + "."),
                                    {own_difference},
                                    "difference of static pressure"});
   if (ReportTable table = differences_table(differences); !table.rows.empty())

@@ -53,8 +53,8 @@ function scale(from, to, begin, end) {
 }
 
 // Minimum and maximum with a small margin. If a few values lie far out, the limits exclude them: `beyond` is
-// their number. `always` lies within.
-function limits(values, always = []) {
+// their number. `always` lies within. The minimum range is `least`.
+function limits(values, always = [], least = 0) {
   const sorted = Float64Array.from(values).sort();
   const last = sorted.length - 1;
   if (last < 0 && !always.length) return {from: 0, to: 1, beyond: 0};
@@ -67,7 +67,8 @@ function limits(values, always = []) {
   from = Math.min(from, ...always);
   to = Math.max(to, ...always);
   const beyond = sorted.filter((value) => value < from || value > to).length;
-  const room = to > from ? 0.04 * (to - from) : Math.max(0.5 * Math.abs(to), 1e-3);
+  const own = to > from ? 0.04 * (to - from) : Math.max(0.5 * Math.abs(to), 1e-3);
+  const room = Math.max(own, (least - (to - from)) / 2);
   return {from: from - room, to: to + room, beyond};
 }
 

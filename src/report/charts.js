@@ -43,6 +43,9 @@ const steady = (columns) => columns.some(({live}) => !live) ? columns.filter(({l
 const valuesOf = (samples, columns) => steady(columns).flatMap((column) =>
   samples.indices([column], samples.every).map((i) => column.values[i]));
 
+// Minimum range of a vertical axis: smaller differences of pressure, hPa, are rounding errors.
+const leastRange = (columns) => columns.every(({unit}) => unit === 'hPa') ? 0.1 : 0;
+
 const cover = (pen, width, height, theme) => pen.rect(0, 0, width, height, theme.paper);
 
 function drawPicture(pen, width, height, item, samples, theme) {
@@ -142,7 +145,7 @@ function drawTime(pen, width, height, item, samples, theme) {
   const found = columns.map((column) => samples.indices([column]));
   const ends = error ? [-1, 1].flatMap((sign) => samples.indices([columns[0], error], samples.every)
     .map((i) => columns[0].values[i] + sign * error.values[i])) : [];
-  const range = limits(valuesOf(samples, columns).concat(ends));
+  const range = limits(valuesOf(samples, columns).concat(ends), [], leastRange(columns));
   range.to += samples.intervals.length ? 0.09 * (range.to - range.from) : 0;
   Object.assign(range, item.vertical);
   const y = scale(range.from, range.to, box.y + box.height, box.y);
@@ -220,7 +223,8 @@ function drawBinned(pen, width, height, item, samples, theme) {
   const shown = bins.map((all) => all.filter(({count}) => count >= fewest));
   const steadily = (of) => steady(columns).flatMap((column) => of(column, columns.indexOf(column)));
   const up = limits(steadily(({values}, c) => whole[c].map((i) => values[i])),
-    steadily((column, c) => shown[c]).flatMap(({mean, error}) => [mean - error, mean + error]));
+    steadily((column, c) => shown[c]).flatMap(({mean, error}) => [mean - error, mean + error]),
+    leastRange(columns));
   const x = scale(across.from, across.to, box.x, box.x + box.width);
   const y = scale(up.from, up.to, box.y + box.height, box.y);
   verticalAxis(pen, box, y, up, sharedLabel(columns, item.axis), theme);

@@ -73,6 +73,15 @@ class ReportInBrowser(PageTest):
                 self.assertEqual(len(set(labels)), len(labels))
         self.assertEqual(self.browser.value("numberTicks(0, 10, 520, 52).length"), 11)
 
+    def test_rounding_errors_do_not_set_the_range_of_pressures(self):
+        self.browser.open(self.report.as_uri())
+        least = "leastRange([{unit: 'hPa'}])"
+        self.assertEqual(self.browser.value("leastRange([{unit: 'hPa'}, {unit: 'K'}])"), 0)
+        for values, always, expected in ("[-6e-5, 0]", "[]", 0.1), ("[]", "[-6e-5, 0]", 0.1), ("[0, 1]", "[]", 1.08):
+            width = self.browser.value(
+                f"(({{from, to}}) => to - from)(limits({values}, {always}, {least}))")
+            self.assertAlmostEqual(width, expected)
+
     def test_long_flight(self):
         report = self.folder / "long.html"
         run(SAMPLE_REPORT, report, "18000")
