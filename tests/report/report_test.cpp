@@ -199,6 +199,13 @@ TEST(Report, EachLineOfTheNextStepHasItsCommand) {
     EXPECT_THAT(html, HasSubstr(step));
 }
 
+TEST(Report, ResultWithAColonIsNoCommand) {
+  Report report = report_of(3, 1);
+  report.next = "It needs 0.0 +- 0.2 hPa: up to 0.5 hPa. To test it, give another flight";
+  EXPECT_THAT(report_html(report),
+              HasSubstr("<p>It needs 0.0 ± 0.2 hPa: up to 0.5 hPa. To test it, give another flight</p>"));
+}
+
 TEST(Report, RefusesAnUnknownColumn) {
   Report report = report_of(3, 1);
   report.items = {TimePanel{"Lines", "", {"c0", "absent"}}};

@@ -305,14 +305,17 @@ void add_notes_on_gps(const ChosenReferences& references, bool separates_atmosph
   }
 }
 
+std::string level_text(const LevelByGps& level) {
+  return level.is_determined() ? "by GPS delta-p needs a mean correction of " + correction_text(level)
+                               : "GPS does not determine the mean delta-p error on these flights; it "
+                                 "requires circles or reverse headings with --reference wind";
+}
+
 /// The mean correction of each model.
 std::vector<std::string> level_texts(const Levels& levels) {
   std::vector<std::string> texts;
   for (const auto& [name, level] : levels) {
-    texts.push_back(name + (level.is_determined()
-                                ? ": by GPS delta-p needs a mean correction of " + correction_text(level)
-                                : ": GPS does not determine the mean delta-p error on these flights; it "
-                                  "requires circles or reverse headings with --reference wind"));
+    texts.push_back(name + ": " + level_text(level));
   }
   return texts;
 }
@@ -370,6 +373,8 @@ void run(const CompareArguments& options) {
     Report report = comparison_report(comparison);
     const std::vector<std::string> levels = level_texts(result.levels);
     report.summary.insert(report.summary.begin(), levels.begin(), levels.end());
+    if (levels.size() == 1 && comparison.models.front().is_by_gps())
+      report.title = "Mean error of the model: " + level_text(result.levels.front().second);
     write_report_of_run(std::move(report),
                         {options.models, options.comparison.flights, {}, next_step(result, models, options)},
                         options.common);

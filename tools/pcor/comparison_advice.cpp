@@ -152,6 +152,12 @@ class NextStep {
                : "";
   }
 
+  /// Absolute mean correction plus two standard errors, hPa.
+  double bound() const {
+    const LevelByGps& level = *level_of(result_.levels, best_.name);
+    return std::abs(level.missing) + 2.0 * level.standard_error;
+  }
+
   std::string not_tested() const {
     return fmt::format("The residual of {} does not test it; give another --reference", best_.name);
   }
@@ -171,12 +177,13 @@ class NextStep {
     const bool is_single = models_.size() == 1;
     const std::string found = correction();
     return fmt::format(
-        "{}GPS does not decide whether {} is right{}. To test it, give flights with circles or reverse "
+        "{}GPS does not decide whether {} is right. {}To test it, give flights with circles or reverse "
         "headings and --reference wind, or another --reference",
         choice(), is_single ? best_.name : "one of the models",
-        found.empty() ? ""
-                      : fmt::format(": {} {}, which with two standard errors exceeds {} hPa",
-                                    is_single ? "it" : best_.name, found, max_model_error));
+        found.empty()
+            ? ""
+            : fmt::format("{} {}: with two standard errors up to {:.2f} hPa, above the tolerance of {} hPa. ",
+                          is_single ? "It" : best_.name, found, bound(), max_model_error));
   }
 
   std::string to_correct() const {
