@@ -200,33 +200,57 @@ ReportTable numbers_of(const CheckResult& result) {
   return table;
 }
 
+/// Checks that ran, by their verdict.
+std::map<CheckVerdict, std::vector<const CheckResult*>> by_verdict(const Checks& checks) {
+  std::map<CheckVerdict, std::vector<const CheckResult*>> found;
+  for (const CheckResult& result : checks.results) {
+    if (result.ran) found[result.verdict].push_back(&result);
+  }
+  return found;
+}
+
 }  // namespace
+
+std::string summary_of(const Checks& checks) {
+  auto found = by_verdict(checks);
+  const auto& inconsistent = found[CheckVerdict::inconsistent];
+  const auto& inconclusive = found[CheckVerdict::inconclusive];
+  const std::size_t consistent = found[CheckVerdict::consistent].size();
+  const std::size_t ran = consistent + inconclusive.size() + inconsistent.size();
+  std::vector<std::string> names;
+  for (const CheckResult* const result : inconsistent) names.push_back(result->name);
+  if (!names.empty())
+    return fmt::format("{} of {} checks inconsistent: {}", names.size(), ran, fmt::join(names, ", "));
+  if (consistent > 0) {
+    return fmt::format(
+        "No check contradicts the {}{}", checks.model.empty() ? "pressures" : "model",
+        inconclusive.empty() ? "" : fmt::format("; {} of {} checks inconclusive", inconclusive.size(), ran));
+  }
+  for (const CheckResult* const result : inconclusive) {
+    const TestStatistic& key = result->key;
+    names.push_back(
+        fmt::format("{} {:+.1f} +- {:.1f} {}", result->name, key.value, key.standard_error, key.unit));
+  }
+  return fmt::format("Nothing is decided: {}{} not run",
+                     names.empty() ? "" : fmt::format("{} inconclusive, ", fmt::join(names, ", ")),
+                     checks.results.size() - ran);
+}
 
 Report check_report(const Checks& checks) {
   Report report = checks.pictures;
-  std::map<CheckVerdict, std::vector<std::string>> names;
-  for (const CheckResult& result : checks.results) {
-    if (!result.ran) continue;
-    names[result.verdict].push_back(result.name);
-    if (result.verdict == CheckVerdict::inconsistent)
-      report.summary.push_back(heading(result.name) + ": " + sentence(result.finding));
-  }
-  const std::vector<std::string>& inconsistent = names[CheckVerdict::inconsistent];
-  const std::size_t consistent = names[CheckVerdict::consistent].size();
-  const std::size_t inconclusive = names[CheckVerdict::inconclusive].size();
-  const std::size_t ran = consistent + inconclusive + inconsistent.size();
-  report.title =
-      !inconsistent.empty() ? fmt::format("{} of {} checks inconsistent: {}", inconsistent.size(), ran,
-                                          fmt::join(inconsistent, ", "))
-      : inconclusive > 0
-          ? fmt::format("No check contradicts the model; {} of {} checks inconclusive", inconclusive, ran)
-      : consistent > 0 ? "No check contradicts the model"
-                       : "No check ran";
+  auto found = by_verdict(checks);
+  const std::size_t inconsistent = found[CheckVerdict::inconsistent].size();
+  const std::size_t consistent = found[CheckVerdict::consistent].size();
+  const std::size_t inconclusive = found[CheckVerdict::inconclusive].size();
+  for (const CheckResult* const result : found[CheckVerdict::inconsistent])
+    report.summary.push_back(heading(result->name) + ": " + sentence(result->finding));
+  report.title = summary_of(checks);
   report.subtitle = "Independent checks" + (checks.model.empty() ? "" : " of " + checks.model);
   report.summary.insert(
       report.summary.begin(),
       fmt::format("{} checks, {} with sufficient data: {} consistent, {} inconsistent, {} inconclusive.",
-                  checks.results.size(), ran, consistent, inconsistent.size(), inconclusive));
+                  checks.results.size(), inconsistent + consistent + inconclusive, consistent, inconsistent,
+                  inconclusive));
   for (const CheckResult& result : checks.results)
     report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());
   show_flights_over_time(report);

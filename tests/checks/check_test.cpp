@@ -421,6 +421,8 @@ TEST_F(CheckTest, ReportTitleCountsInconclusiveChecks) {
     result.verdict = verdict;
   }
   EXPECT_THAT(check_report(checks).title, HasSubstr("1 of 2"));
+  checks.results[0].ran = false;
+  EXPECT_THAT(summary_of(checks), testing::AllOf(HasSubstr("1 not run"), HasSubstr("layers +0.0")));
 }
 
 // The difference includes the defect of the second pair, a few hPa.

@@ -128,7 +128,6 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
            (pictures.empty() ? "" : "\n" + pictures);
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
-  const std::size_t open = count_of(checks, CheckVerdict::inconclusive);
   const std::vector<std::filesystem::path> inputs = inputs_of(options);
   if (model && (fails("layers") || fails("lams-temperature"))) {
     return fmt::format("To find the thermometer's error by the height: {} temperature {} -o {}", program(),
@@ -143,8 +142,7 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
   }
   if (inconsistent == 0 && model && count_of(checks, CheckVerdict::consistent) > 0) {
     return fmt::format(
-        "No check contradicts the model{}. To apply it: {}",
-        open > 0 ? fmt::format("; {} check{} inconclusive", open, open == 1 ? "" : "s") : "",
+        "To apply the model: {}",
         process_command(options.flights.flights, *model, options.model, options.flights.timestamp_alignment));
   }
   return pictures;
@@ -192,6 +190,7 @@ void print(const Checks& checks, const CheckArguments& options, const std::optio
   if (is_verbose()) print_details(checks);
   say_notes(checks.notes);
   say_written({options.common.report, options.table, options.common.json});
+  say("{}.\n", summary_of(checks));
   if (const std::string next = next_step(checks, options, model); !next.empty()) say("{}\n", next);
 }
 
