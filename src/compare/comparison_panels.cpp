@@ -17,7 +17,7 @@
 namespace pcor::internal {
 namespace {
 
-// Minimum number of samples of a regime that is named as the worst one.
+// Minimum number of samples of a regime that is named as the worst one; one per cent of all, if that is more.
 constexpr std::size_t min_in_regime = 60;
 // Ratio to the noise; smaller ratios are not reported.
 constexpr double notable_failure = 1.2;
@@ -242,9 +242,10 @@ void ComparisonPanels::summarise() {
   const ModelComparison& last = comparison_.models.back();
   if (std::string text = shown_text(comparison_.flights.size(), last.flights.size()); !text.empty())
     report().summary.push_back(std::move(text));
+  const std::size_t min_samples = std::max(min_in_regime, last.all.samples / 100);
   const PartStatistics* worst = nullptr;
   for (const PartStatistics& part : last.regimes) {
-    if (last.is_by_gps() || part.statistics.samples < min_in_regime ||
+    if (last.is_by_gps() || part.statistics.samples < min_samples ||
         !(part.statistics.rms_over_noise() > notable_failure))
       continue;
     if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;

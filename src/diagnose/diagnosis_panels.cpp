@@ -196,9 +196,9 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
   if (std::any_of(panel.coefficients.begin(), own_end,
                   [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); }))
-    panel.details +=
-        "The coefficients of the reference system keep their input values here, so the held-out rms differs "
-        "from that of pcor improve, which fits them. ";
+    panel.caption +=
+        " The coefficients of the reference system keep their input values here, so the held-out rms differs "
+        "from that of pcor improve, which fits them.";
   panel.details +=
       "The numbers use all samples; pictures and tables of a flight of more than 16,000 samples interpolate "
       "derivatives between regular samples.";

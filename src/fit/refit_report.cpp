@@ -115,11 +115,13 @@ ReportTable flight_table(const RefitResult& fit) {
 Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   ComparisonPanels panels(comparison);
   Report& report = panels.report();
-  const std::string change = std::isnan(fit.rms_before)
-                                 ? "gives an rms residual of"
-                                 : fmt::format("changes the rms residual from {:.3f} to", fit.rms_before);
-  report.title = fmt::format("The refit {} {:.3f} hPa; {} {:.3f} hPa", change, fit.rms, fit.noise_label(),
-                             fit.noise_rms);
+  const std::string before = fmt::format("{:.3f}", fit.rms_before), after = fmt::format("{:.3f}", fit.rms);
+  const std::string change = std::isnan(fit.rms_before) ? "gives an rms residual of"
+                             : before == after          ? "does not change the rms residual of"
+                                                        : "changes the rms residual from " + before + " to";
+  report.title = fmt::format(
+      "The refit {} {} hPa; {} {:.3f} hPa{}", change, after, fit.noise_label(), fit.noise_rms,
+      fit.defect_error > 0.0 ? fmt::format("; standard error of delta-p {:.2f} hPa", fit.defect_error) : "");
   report.subtitle = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   summarise_held_out(report, fit.flights);
   for (const std::string& warning : fit.warnings) report.summary.push_back(sentence(warning));

@@ -462,7 +462,7 @@ class ForwardSelection {
       return stop(
           StopReason::nothing_missing,
           fmt::format("no missing effect is detectable on {} flights: {} of {} effects would be detected at "
-                      "their usual size; the rms residual is {} with a noise of {}{}{}",
+                      "their usual size; the fitted rms residual is {} with a noise of {}{}{}",
                       off.empty() ? "these" : "the fitted", detectable, all, shown(now.rms_given),
                       shown(now.noise_rms), off.empty() ? "" : "; but ", fmt::join(off, "; ")));
     }

@@ -162,8 +162,9 @@ void summarise(Report& report, const Improvement& improvement) {
                         hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
   for (const ImproveStep& step : improvement.steps) {
     if (step.added.empty()) continue;
-    std::string text = fmt::format("Added: {}; the rms residual becomes {} hPa.",
-                                   name_with_id(step.title, step.added), hpa(step.rms_holdout));
+    std::string text =
+        fmt::format("Added: {}; the held-out rms residual becomes {} hPa (fitted: {} hPa).",
+                    name_with_id(step.title, step.added), hpa(step.rms_holdout), hpa(step.rms_train));
     if (!step.aliases.empty())
       text += fmt::format(" These flights cannot distinguish it from {}.", join_list(step.aliases));
     report.summary.push_back(std::move(text));

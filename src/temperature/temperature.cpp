@@ -418,7 +418,9 @@ class TemperatureCalibration {
     const double after = rms_without_other_errors(result_.likelihood.coefficients);
     if (after > before) {
       return fmt::format(
-          "height rms with the correction is {:.2f} m, without it {:.2f} m, although the likelihood improves",
+          "height rms without the other fitted errors is {:.2f} m with the correction and {:.2f} m without "
+          "it, "
+          "although the likelihood improves",
           after, before);
     }
     if (std::abs(result_.least_squares_add) > significant_ratio * result_.least_squares_add_error) {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -374,6 +375,21 @@ TEST(ComparisonReport, ModelsWithLongNamesAreNumbered) {
   const auto table = std::find_if(report.items.begin(), report.items.end(), is_table);
   ASSERT_NE(table, report.items.end());
   EXPECT_EQ(std::get<pcor::ReportTable>(*table).rows[1][1], long_name);
+}
+
+TEST(ComparisonReport, WorstRegimeHasOnePerCentOfTheSamples) {
+  Comparison comparison;
+  pcor::ModelComparison& model = comparison.models.emplace_back();
+  model.all.samples = 14000;
+  for (const auto& [name, samples, rms] : {std::tuple("take-off", 66U, 2.0), {"descent", 2016U, 0.5}}) {
+    pcor::PartStatistics& part = model.regimes.emplace_back();
+    part.name = name;
+    part.statistics.samples = samples;
+    part.statistics.rms = rms;
+    part.statistics.noise_rms = 0.3;
+  }
+  EXPECT_THAT(pcor::comparison_report(comparison).summary,
+              testing::Contains(HasSubstr("largest errors in the regime descent")));
 }
 
 TEST(ComparisonReport, HasTheFiguresAndIsSmall) {

@@ -40,6 +40,13 @@ TEST(RefitReport, TitleAndSummaryStateRmsBeforeAndAfter) {
   EXPECT_THAT(report.summary, Contains(AllOf(HasSubstr("later.nc"), HasSubstr("1.250"), HasSubstr("0.500"))));
 }
 
+TEST(RefitReport, TitleStatesAnUnchangedRmsOnceAndTheErrorByGps) {
+  RefitResult result = fit(0.3751);
+  result.defect_error = 4.4;
+  EXPECT_THAT(report_of(result).title,
+              AllOf(HasSubstr("does not change"), HasSubstr("residual of 0.375 hPa"), HasSubstr("4.40 hPa")));
+}
+
 TEST(RefitReport, UnknownRmsBeforeIsOmitted) {
   const Report report = report_of(fit(std::nan("")));
   EXPECT_THAT(report.title, AllOf(HasSubstr("0.375"), HasSubstr("0.250"), Not(HasSubstr("nan"))));

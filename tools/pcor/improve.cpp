@@ -56,7 +56,7 @@ void print(const Improvement& improvement, const ChosenReferences& references,
       last.rms_holdout, last.noise_rms);
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
   say("{:<24} {:>10} {:>10} {:>10} {:>13}  {}\n", "rms, hPa", "training", "held out", "noise", "coefficients",
-      "effect");
+      "rms of effect");
   say("{:<24} {:>10} {:>10}\n", "input model", figure(improvement.given_rms_train),
       figure(improvement.given_rms_holdout));
   bool delivers_rivals = false;

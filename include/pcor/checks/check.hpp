@@ -139,7 +139,7 @@ std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
                                                        const std::optional<ModelDefinition>& model,
                                                        const CheckOptions& options = {});
 
-/// What the checks decide together, one sentence without its full stop.
+/// Common verdict of the checks, one sentence without its full stop.
 std::string summary_of(const Checks& checks);
 
 /// Report of the checks: a table of verdicts, and for each check its numbers, tables and figures.
