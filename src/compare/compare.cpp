@@ -335,10 +335,10 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     add_variances(m, flights.share(), records, threads, parts);
     ModelSums sums;
     std::vector<PartStatistics> of_flights;
-    for (const FlightPart& part : parts) {
-      sums.add(part.models[m]);
-      of_flights.push_back({part.name, part.models[m].all.statistics()});
-    }
+    for (const FlightPart& part : parts) sums.add(part.models[m]);
+    const bool is_determined = sums.all.determines_level();
+    for (const FlightPart& part : parts)
+      of_flights.push_back({part.name, part.models[m].all.statistics(is_determined)});
     result.models.push_back(comparison_of(pairings[m].compared->name, *pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
     result.models.back().is_circular = are_circular[m];

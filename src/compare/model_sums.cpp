@@ -142,6 +142,7 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   ModelComparison result;
   result.name = name;
   result.reference = reference.name();
+  const bool level_is_determined = sums.all.determines_level();
   result.all = sums.all.statistics();
   result.flaps_out = sums.flaps_out.statistics();
   result.flights = std::move(flights);
@@ -158,7 +159,8 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   result.autocorrelation_time = std::isfinite(memory) ? std::max(1.0, memory) : nan;
   for (std::size_t r = 0; r < regime_count; ++r) {
     if (sums.regimes[r].samples > 0)
-      result.regimes.push_back({std::string(regime_info[r].name), sums.regimes[r].statistics()});
+      result.regimes.push_back(
+          {std::string(regime_info[r].name), sums.regimes[r].statistics(level_is_determined)});
   }
   for (std::size_t b = 0; b < bandings.size(); ++b) {
     for (const auto& [band, part] : sums.bands[b]) {
@@ -166,7 +168,7 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
       const double from = static_cast<double>(band) * bandings[b].width;
       result.bands.push_back(
           {fmt::format(fmt::runtime(bandings[b].format), bandings[b].name, from, from + bandings[b].width),
-           part.statistics()});
+           part.statistics(level_is_determined)});
     }
   }
   return result;

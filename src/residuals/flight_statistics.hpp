@@ -27,7 +27,10 @@ struct ResidualSums {
   /// Adds a sample, without its contribution to `sum_variance`.
   void add(double residual, double noise);
   void add(const ResidualSums& other);
-  Statistics statistics() const;
+  /// @param level_is_determined false: the bias is the mean residual
+  Statistics statistics(bool level_is_determined = true) const;
+  /// False if these are sums by GPS and the standard error of their bias is not below 1 hPa.
+  bool determines_level() const;
 };
 
 /// Values at some of the samples, NaN at all others.

@@ -14,6 +14,12 @@ namespace pcor {
 
 using namespace internal;
 
+namespace {
+
+constexpr double max_level_error = 1.0;  // hPa
+
+}  // namespace
+
 void ResidualSums::add(double residual, double noise) {
   ++samples;
   sum += residual;
@@ -33,7 +39,11 @@ void ResidualSums::add(const ResidualSums& other) {
     by_gps += other.by_gps;
 }
 
-Statistics ResidualSums::statistics() const {
+bool ResidualSums::determines_level() const {
+  return by_gps.size() == 0 || statistics().bias_error < max_level_error;
+}
+
+Statistics ResidualSums::statistics(bool level_is_determined) const {
   Statistics result;
   result.samples = samples;
   if (samples == 0) {
@@ -50,17 +60,19 @@ Statistics ResidualSums::statistics() const {
     Eigen::MatrixXd products = by_gps;
     products.diagonal().head(nuisances).array() += 1.0;  // their priors
     const Eigen::MatrixXd left = products_after(products, nuisances);
-    constexpr double known = 1.0;  // hPa
+    constexpr double max_bias = 5.0;  // rms; a real bias of delta-p changes its residuals more
     const bool has_rows = left(1, 1) > rank_limit * left(0, 0);
     const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
     // A residual beyond the noise of GPS makes the error larger (Birge 1932, Physical Review 40, 207).
     const double birge = std::fmax(1.0, result.scatter() / result.noise_rms);
     result.bias_error = has_rows ? birge * std::sqrt(both.sum()) : nan;
     // Sign of a residual: positive if delta-p is too small. An undetermined level stays as measured.
+    const double by_level = both.dot(left.col(2).head(2));
     if (!has_rows)
       result.bias = nan;
-    else if (result.bias_error < known)
-      result.bias = both.dot(left.col(2).head(2));
+    else if (level_is_determined && result.bias_error < max_level_error &&
+             std::abs(by_level) < max_bias * result.rms)
+      result.bias = by_level;
   }
   return result;
 }

@@ -135,6 +135,18 @@ TEST(Compare, SeparatesTheAtmosphereFromTheBiasAgainstWind) {
   EXPECT_EQ(measured.models[0].autocorrelation_time, comparison.models[0].autocorrelation_time);
 }
 
+// Its climb alone stated a level of -5.6 hPa, with an rms of 0.03 hPa.
+TEST(Compare, UndeterminedLevelLeavesMeansOfAllParts) {
+  const ModelDefinition model = pcor::read_model(data / "models" / "c130-psfd-2014.toml");
+  const Comparison comparison =
+      pcor::compare({pcor::test::short_flight()}, {{"a law", model, {pcor::height_reference(model)}}});
+  const pcor::ModelComparison& by_height = comparison.models.front();
+  ASSERT_GT(by_height.all.bias_error, 1.0);
+  ASSERT_GT(by_height.regimes.size(), 3U);
+  for (const pcor::PartStatistics& part : by_height.regimes)
+    EXPECT_EQ(part.statistics.bias, part.statistics.mean) << part.name;
+}
+
 TEST(Compare, ReportsBiasFromLaserCalibration) {
   ComparedModel given = laser_contender();
   given.model.uncertainty.sensors = {{"lams-elevation.dtheta1", 0.0},
