@@ -74,6 +74,31 @@ TEST(Reference, PressureComputedFromThatOfTheModelGivesAWarning) {
   }
 }
 
+TEST(Reference, PressureThatIsNotStaticIsRefused) {
+  const test::TemporaryDirectory folder;
+  {
+    test::NetcdfMaker maker(folder.path() / "flight.nc");
+    maker.time(test::sequence(0, 50));
+    maker.text(maker.series("QCF", "hPa", std::vector<double>(50, 70.0)), "long_name",
+               "Raw Dynamic Pressure");
+    maker.text(maker.series("PCAB", "hPa", std::vector<double>(50, 710.0)), "long_name",
+               "Interior Cabin Static Pressure");
+    maker.text(maker.series("PSFRD", "hPa", std::vector<double>(50, 700.0)), "long_name",
+               "Raw Static Pressure");
+  }
+  const Flight flight(folder.path() / "flight.nc");
+  Notes notes;
+  const auto read = [&](const std::string& variable) {
+    return read_reference("pressure:" + variable, without_laser())->read(flight, {}, notes);
+  };
+  for (const char* const variable : {"QCF", "PCAB"}) {
+    EXPECT_THAT(test::error_of([&] { read(variable); }), test::IsError(Error::Code::variable, variable));
+  }
+  read("PSFRD");
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0].severity, Severity::warning);
+}
+
 TEST(Reference, ListsItsVariables) {
   EXPECT_TRUE(lams_reference()->reads_laser());
   EXPECT_TRUE(lams_reference()->variables().empty());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "residuals/reference_on_samples.hpp"
 #include "roles/computed_from.hpp"
 #include "roles/recorded_series.hpp"
+#include "roles/role_evidence.hpp"
 
 namespace pcor::internal {
 
@@ -69,6 +71,7 @@ class PressureReference final : public Reference {
     const UnitConversion conversion =
         believed(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
     flight.require_values(variable_);
+    require_static(flight, notes);
     if (!of_model_.empty() && is_computed_from(flight, variable_, of_model_)) {
       const std::string what = variable_ == of_model_ ? "is" : "is computed from " + of_model_ + ",";
       notes.emplace_back(Severity::warning, fmt::format("use an independent reference: {} {} the static "
@@ -88,6 +91,29 @@ class PressureReference final : public Reference {
   }
 
  private:
+  /// Warns about the raw pressure of another system. @throws Error if the file describes the variable as a
+  /// dynamic or cabin pressure
+  void require_static(const Flight& flight, Notes& notes) const {
+    for (const Quantity role : {Quantity::dynamic_pressure, Quantity::cabin_pressure}) {
+      const std::string name(info_of(role).name);
+      for (const RoleCandidate& candidate : role_candidates(flight, name)) {
+        if (candidate.variable != variable_ || candidate.score < sure_score) continue;
+        throw Error(
+            Error::Code::variable,
+            fmt::format("{}: {}, the reference, is a {}, not a static pressure: {}; give another with "
+                        "--reference",
+                        flight.path().string(), variable_, name, candidate.why));
+      }
+    }
+    const std::string& long_name = flight.variable(variable_).long_name;
+    const std::vector<std::string> words = plain_words(long_name);
+    if (variable_ == of_model_ || std::find(words.begin(), words.end(), "raw") == words.end()) return;
+    notes.push_back(warning_note(
+        fmt::format("use --reference static:MODEL with a model of {0} ('pcor inspect' lists published "
+                    "models): the file describes {0} as '{1}', so the residual contains its error",
+                    variable_, long_name)));
+  }
+
   std::string variable_;
   std::string of_model_;
 };
