@@ -220,6 +220,14 @@ class Compare(ComparisonTest):
                 omitted = int(re.search(r"(\d+) rows omitted \(--verbose\)", text).group(1))
                 self.assertGreaterEqual(omitted, len(all_rows) - len(rows))
 
+    def test_short_table_has_the_regimes_with_the_largest_ratio_and_bias(self):
+        arguments = ("compare", ONE, "-m", self.model(with_a0(0.007)), "--reference", "lams", "--reference", "total:PSFRD+QCFR")
+        model = json.loads(self.done(*arguments, "--json", "-").stdout)["models"][0]
+        text = self.run_tool(*arguments).stdout
+        long = [part for part in model["regimes"] if part["samples"] >= 0.01 * model["samples"]]
+        for worst in (max(long, key=lambda part: part["rms_hpa"] / part["noise_rms_hpa"]), max(long, key=lambda part: abs(part["bias_hpa"]))):
+            self.assertIn(f"\n  {worst['name']} ", text)
+
     def test_a_residual_of_zero_has_no_autocorrelation_time(self):
         text = self.done("compare", ONE, "-m", self.model(), "--reference", f"static:{self.model()}").stdout
         self.assertIn("worst minutes", text)

@@ -49,23 +49,33 @@ struct ShownParts {
   std::size_t omitted = 0;
 };
 
-/// At most `max_regimes` regimes, those with most samples, the `max_bands` worst bands, and the part with the
-/// largest ratio.
+/// At most `max_regimes` regimes: of those with 1 % of the samples the ones with the largest ratio and bias,
+/// then those with most samples; the `max_bands` worst bands; and the part with the largest ratio.
 ShownParts shown_parts(const ModelComparison& model, std::size_t max_regimes, std::size_t max_bands) {
   std::vector<PartStatistics> bands = model.bands;
   std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
     return fails_more(a.statistics, b.statistics);
   });
   if (bands.size() > listed_bands) bands.resize(listed_bands);
-  std::vector<std::size_t> samples;
-  double largest = 0.0;
+  double largest = 0.0, largest_of_regimes = 0.0, largest_bias = 0.0;
+  const auto is_long = [&](const Statistics& part) { return 100 * part.samples >= model.all.samples; };
   for (const auto* const parts : {&model.regimes, &std::as_const(bands)}) {
     for (const PartStatistics& part : *parts)
       largest = std::max(largest, part.statistics.rms_over_noise());  // NaN is not larger
   }
-  for (const PartStatistics& part : model.regimes) samples.push_back(part.statistics.samples);
-  std::sort(samples.rbegin(), samples.rend());
-  const std::size_t min_samples = samples.size() <= max_regimes ? 0 : samples[max_regimes - 1];
+  for (const auto& [name, part] : model.regimes) {
+    if (!is_long(part)) continue;
+    largest_of_regimes = std::max(largest_of_regimes, part.rms_over_noise());
+    largest_bias = std::max(largest_bias, std::abs(part.bias));
+  }
+  const auto rank = [&](const Statistics& part) {
+    const bool is_worst = part.rms_over_noise() == largest_of_regimes || std::abs(part.bias) == largest_bias;
+    return std::pair(is_long(part) && is_worst, part.samples);
+  };
+  std::vector<std::pair<bool, std::size_t>> ranks;
+  for (const PartStatistics& part : model.regimes) ranks.push_back(rank(part.statistics));
+  std::sort(ranks.rbegin(), ranks.rend());
+  const auto least = ranks.size() <= max_regimes ? std::pair(false, std::size_t{0}) : ranks[max_regimes - 1];
   ShownParts shown;
   const auto add = [&](const PartStatistics& part, bool is_main, std::vector<PartStatistics>& to) {
     if (is_main || part.statistics.rms_over_noise() == largest)
@@ -73,8 +83,10 @@ ShownParts shown_parts(const ModelComparison& model, std::size_t max_regimes, st
     else
       ++shown.omitted;
   };
-  for (const PartStatistics& part : model.regimes)
-    add(part, part.statistics.samples >= min_samples, shown.regimes);
+  for (const PartStatistics& part : model.regimes) {
+    const auto own = rank(part.statistics);
+    add(part, own.first || own >= least, shown.regimes);
+  }
   for (std::size_t i = 0; i < bands.size(); ++i) add(bands[i], i < max_bands, shown.bands);
   return shown;
 }
