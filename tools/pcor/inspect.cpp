@@ -241,7 +241,8 @@ void print_by_gps(const GpsDesign& gps) {
     return error < GpsDesign::max_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
                                         : fmt::format("undetermined (requires {})", manoeuvre);
   };
-  say("delta-p by GPS ({}), expected standard errors: level {}, change with airspeed {}{}\n",
+  say("delta-p by GPS ({}), standard errors at best (usual atmosphere; refit states those of the flight): "
+      "level {}, change with airspeed {}{}\n",
       gps.by_wind && gps.by_height ? "wind and height"
       : gps.by_wind                ? "wind"
                                    : "height",
