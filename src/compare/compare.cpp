@@ -372,7 +372,7 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
     throw Error(
         Error::Code::samples,
         fmt::format("{}: no samples remain to compare: {}; see the variables of the model and "
-                    "--min-airspeed, --max-flaps, --exclude",
+                    "--min-airspeed, --max-flaps, --exclude, --intervals",
                     flights.size() == 1 ? flights.path(0).string() : "the flights", mask_text(result.masks)));
   }
   for (auto field = fields.begin() + 1; field != fields.end(); ++field) {

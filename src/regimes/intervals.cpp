@@ -1,5 +1,7 @@
 #include <pcor/regimes/regimes.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -73,13 +75,22 @@ UserIntervals placed(const UserIntervals& user, double first_time, double last_t
   return result;
 }
 
-std::size_t count_outside(const UserIntervals& intervals, double first_time, double last_time) {
+std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, double first_time,
+                                               double last_time) {
   const UserIntervals moments = placed(intervals, first_time, last_time);
-  const auto count = [&](const auto& list) {
-    return std::count_if(list.begin(), list.end(),
-                         [&](const auto& each) { return each.end <= first_time || each.begin > last_time; });
+  std::vector<OutsideInterval> outside;
+  const auto find = [&](const char* kind, const auto& stated, const auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (list[i].end > first_time && list[i].begin <= last_time) continue;
+      outside.push_back(
+          {fmt::format("[[{}]] {} to {}", kind, utc_text(list[i].begin), utc_text(list[i].end, "%H:%M:%S")),
+           stated[i].begin < day});
+    }
   };
-  return static_cast<std::size_t>(count(moments.add) + count(moments.veto) + count(moments.exclude));
+  find("add", intervals.add, moments.add);
+  find("veto", intervals.veto, moments.veto);
+  find("exclude", intervals.exclude, moments.exclude);
+  return outside;
 }
 
 std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double first_time,

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <pcor/base/note.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/chain.hpp>
@@ -310,11 +311,14 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   }
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {
-    const std::size_t outside = count_outside(*options.intervals, samples.time.front(), samples.time.back());
-    std::string note = fmt::format("{} of the intervals of the file are outside this flight", outside);
-    // A file for several flights may have intervals for each.
-    if (outside > 0)
-      samples.notes.push_back(options.intervals->flight.empty() ? Note(std::move(note)) : warning_note(note));
+    for (const OutsideInterval& outside :
+         intervals_outside(*options.intervals, samples.time.front(), samples.time.back())) {
+      std::string note = fmt::format("{} changes nothing: it is outside the flight, {} to {}", outside.text,
+                                     utc_text(samples.time.front()), utc_text(samples.time.back()));
+      // A file for several flights may have dated intervals for each.
+      const bool is_for_this = outside.is_time_of_day || !options.intervals->flight.empty();
+      samples.notes.push_back(is_for_this ? warning_note(std::move(note)) : Note(std::move(note)));
+    }
     samples.intervals =
         apply(*options.intervals, std::move(samples.intervals), samples.time.front(), samples.time.back());
   } else if (options.intervals) {

@@ -40,7 +40,7 @@ auto IsRefusal(const std::string& position, const Names&... names) {
 
 std::optional<Error> refusal(const std::string& text) { return refusal_of_whole(format + text); }
 
-TEST(UserIntervals, CountsThoseOutsideTheFlight) {
+TEST(UserIntervals, NamesThoseOutsideTheFlight) {
   const UserIntervals user = parse(R"([[exclude]]
 begin = "20:10:00"
 end = "20:11:00"
@@ -53,8 +53,11 @@ reason = "iced"
 begin = "20:59:00"
 end = "21:30:00"
 )");
-  EXPECT_EQ(count_outside(user, midnight + 20.0 * hour, midnight + 21.0 * hour), 1U);
-  EXPECT_EQ(count_outside(user, midnight + 20.0 * hour, midnight + 24.0 * hour), 0U);
+  const auto outside = intervals_outside(user, midnight + 20.0 * hour, midnight + 21.0 * hour);
+  ASSERT_EQ(outside.size(), 1U);
+  EXPECT_THAT(outside[0].text, testing::HasSubstr("23:30:00 to 23:31:00"));
+  EXPECT_TRUE(outside[0].is_time_of_day);
+  EXPECT_TRUE(intervals_outside(user, midnight + 20.0 * hour, midnight + 24.0 * hour).empty());
 }
 
 // "level 1-3" and the like, in seconds.

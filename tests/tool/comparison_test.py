@@ -355,6 +355,12 @@ class Compare(ComparisonTest):
         self.assertEqual(masks["excluded"], 60)
         self.assertEqual(masks["used"], self.compare()["masks"]["used"] - 60)
 
+    def test_an_interval_outside_the_flight_gives_a_warning(self):
+        intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[exclude]]\nbegin = "03:10:00"\n'
+                               'end = "03:11:00"\nreason = "a test"\n')
+        text = self.run_tool("compare", ONE, "-m", self.model(), "--intervals", intervals).stdout
+        self.assertRegex(text, "(?m)^warning.*03:10:00 to 03:11:00")
+
     def test_an_added_regime_has_its_statistics(self):
         intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[add]]\nregime = "cloud"\n'
                                'begin = 2011-11-17T20:10:00Z\nend = 2011-11-17T20:12:00Z\n')

@@ -215,9 +215,15 @@ struct UserIntervals {
   bool is_for(const std::filesystem::path& flight_file) const;
 };
 
-/// Number of intervals, of all kinds, that have no time in common with a flight from `first_time` to
-/// `last_time`.
-std::size_t count_outside(const UserIntervals& intervals, double first_time, double last_time);
+/// Interval that has no time in common with a flight.
+struct OutsideInterval {
+  std::string text;             ///< "[[exclude]] 2011-11-17 20:30:00 to 20:31:00"
+  bool is_time_of_day = false;  ///< stated without a date, so for any flight
+};
+
+/// Intervals, of all kinds, that have no time in common with a flight from `first_time` to `last_time`.
+std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, double first_time,
+                                               double last_time);
 
 /// Reads the user's intervals from a TOML file:
 ///
