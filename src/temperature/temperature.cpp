@@ -492,6 +492,18 @@ class TemperatureCalibration {
 
 }  // namespace
 
+double TemperatureResult::largest_correction() const {
+  double largest = 0.0;
+  for (const TemperatureCorrection& at : corrections) {
+    if (std::abs(at.correction) > std::abs(largest)) largest = at.correction;
+  }
+  return largest;
+}
+
+bool TemperatureResult::is_implausible() const {
+  return std::abs(largest_correction()) > 5.0 * usual_thermometer_error;
+}
+
 TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,
                                   const TemperatureOptions& options) {
   if (flights.empty())

@@ -5,6 +5,7 @@
 
 #include <pcor/base/note.hpp>
 #include <pcor/effects/psfd_bias.hpp>
+#include <pcor/effects/temp_offset.hpp>
 #include <pcor/temperature/temperature.hpp>
 #include "temperature/height_record.hpp"
 
@@ -15,6 +16,10 @@ inline constexpr double significant_ratio = 3.0;
 
 /// Usual zero of a static transducer, hPa. It is constant, and models were fitted to pressures that have it.
 inline constexpr double usual_zero = effects::PsfdBias::info().parameters[0].typical;
+
+/// Usual calibration error of a thermometer, K.
+inline constexpr double usual_thermometer_error =
+    effects::TempOffset::info().parameters[0].calibration_uncertainty;
 
 /// Whether heights detect an error of the static-pressure model that is larger than its prior allows.
 bool is_beyond_prior(const LawError& error);

@@ -10,6 +10,7 @@
 #include <pcor/base/error.hpp>
 #include "communicator.hpp"
 #include "comparison.hpp"
+#include "model_name.hpp"
 #include "model_selector.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -153,6 +154,12 @@ std::string next_step(const TemperatureResult& result, const TemperatureArgument
     return process_command(used_flights(result, options), result.model, model,
                            options.comparison.timestamp_alignment);
   };
+  if (result.worse.empty() && result.is_implausible()) {
+    ComparisonOptions flights = options.comparison;
+    flights.references.clear();
+    return fmt::format("To find the cause of the large correction: {} check {} -m {}", program(),
+                       advised_command_line(flights), model_argument(options.model));
+  }
   if (result.worse.empty()) return "To apply it: " + process(options.output);
   return "Flights that climb and descend by 3 km and more, there and back along the same track, determine "
          "the correction better. To apply the input model: " +

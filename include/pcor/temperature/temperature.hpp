@@ -238,6 +238,11 @@ struct TemperatureResult {
   std::vector<std::string> warnings{};  ///< warnings, one sentence each
   Notes notes{};                        ///< notes for the user, one sentence each, by decreasing severity
   Notes notes_on_degree{};              ///< the notes on the choice of the degree
+
+  /// Correction with the largest absolute value, K; 0 without corrections.
+  double largest_correction() const;
+  /// Whether the largest correction exceeds five times the usual error of a thermometer, 0.3 K.
+  bool is_implausible() const;
 };
 
 template <class Field>
