@@ -159,7 +159,9 @@ class NextStep {
   }
 
   std::string not_tested() const {
-    return fmt::format("The residual of {} does not test it; give another --reference", best_.name);
+    return fmt::format(
+        "{} reads the pressures of {}, so the residual does not test it; give another --reference",
+        best_.reference, best_.name);
   }
 
   std::string to_apply() const {
