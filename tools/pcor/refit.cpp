@@ -143,7 +143,7 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
         surface.degrees_of_freedom);
   }
   if (result.defect_error > 0.0)
-    say("standard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
+    say("standard error of delta-p over the flights, by all coefficients: {:.2f} hPa\n", result.defect_error);
 }
 
 /// ", before 0.123"; empty for NaN, if samples have no residual with the coefficients of the file.
