@@ -113,6 +113,7 @@ class Processing {
     writer.finish();
     if (summary_.in_flight > 0) {
       summary_.mean_defect /= static_cast<double>(summary_.in_flight);
+      note_defect_uncertainty();
     } else {
       summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
     }
@@ -408,6 +409,19 @@ class Processing {
                        [this](Quantity role) { return uncertainty_.random[index(role)] > 0.0; });
   }
 
+  /// Warns if delta-p is less certain than the errors that a correction removes.
+  void note_defect_uncertainty() {
+    if (uncertain_samples_ == 0) return;
+    constexpr double max_uncertainty = 1.0;  // hPa, as in a fit by GPS
+    summary_.defect_uncertainty = sum_of_uncertainties_ / static_cast<double>(uncertain_samples_);
+    if (summary_.defect_uncertainty < max_uncertainty) return;
+    summary_.notes.push_back(
+        warning_note(fmt::format("delta-p is not determined: its standard uncertainty is {:.2f} hPa on "
+                                 "average; refit the model with a "
+                                 "laser, a second static system, or GPS wind in circles or reverse headings",
+                                 summary_.defect_uncertainty)));
+  }
+
   void note_uncertainty() {
     if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
     if (options_.correct_with == CorrectWith::lams) {
@@ -616,6 +630,12 @@ class Processing {
         summary_.mean_defect += defect;  // the sum, until the end
         summary_.min_defect = std::min(summary_.min_defect, defect);
         summary_.max_defect = std::max(summary_.max_defect, defect);
+        const double uncertainty = state[Quantity::static_defect_uncertainty];
+        if (options_.correct_with == CorrectWith::model && states_defect_error() &&
+            !is_missing(uncertainty)) {
+          ++uncertain_samples_;
+          sum_of_uncertainties_ += uncertainty;
+        }
       }
     }
     QualityFlags quality = loop_->quality();
@@ -717,6 +737,8 @@ class Processing {
   std::vector<bool> frozen_;                 // records in which any sensor is frozen; empty: none
   std::vector<bool> flaps_;                  // records outside the law by extended flaps; empty: none
   std::vector<bool> outside_;                // records in flight outside the domain of the law; empty: none
+  std::size_t uncertain_samples_ = 0;        // in flight, with an uncertainty of delta-p
+  double sum_of_uncertainties_ = 0.0;        // of delta-p in these samples, hPa
   bool did_not_fly_ = false;                 // the dynamic pressure stays below that of flight
   std::size_t noted_ = 0;                    // samples of which results are available
   std::map<Quantity, std::string> names_;    // names of inputs and results in the output
@@ -727,6 +749,16 @@ class Processing {
 }  // namespace pcor::internal
 
 namespace pcor {
+
+std::string format_defect(const ProcessSummary& summary) {
+  if (summary.min_defect == 0.0 && summary.max_defect == 0.0)
+    return "delta-p zero: the model does not change the pressures";
+  return fmt::format("delta-p {:.2f} hPa on average ({:.2f} to {:.2f}), {}", summary.mean_defect,
+                     summary.min_defect, summary.max_defect,
+                     is_missing(summary.defect_uncertainty)
+                         ? "uncertainty not stated"
+                         : fmt::format("standard uncertainty {:.2f} hPa", summary.defect_uncertainty));
+}
 
 ProcessSummary process_flight(const std::filesystem::path& input, const ModelDefinition& model,
                               const std::filesystem::path& output, const ProcessOptions& options) {

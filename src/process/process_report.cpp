@@ -238,9 +238,7 @@ std::string title_of(const std::vector<ProcessedFlight>& flights) {
   if (flights.size() > 1) return fmt::format("Corrections of {} flights", flights.size());
   const ProcessSummary& summary = flights.front().summary;
   return fmt::format("{} of {} samples corrected{}", summary.corrected, summary.samples,
-                     summary.in_flight == 0
-                         ? ""
-                         : fmt::format("; delta-p {:.2f} hPa on average in flight", summary.mean_defect));
+                     summary.in_flight == 0 ? "" : "; in flight " + format_defect(summary));
 }
 
 }  // namespace

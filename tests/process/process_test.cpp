@@ -828,6 +828,19 @@ TEST_F(Process, PressuresHaveNoUncertaintyWithoutTheErrorOfDeltaP) {
   EXPECT_THAT(process_flight(input_, model, output_).outputs, Contains("PSXC_uncertainty"));
 }
 
+TEST_F(Process, WarnsOfAnUndeterminedDefect) {
+  write_flight(input_, 20, 1);
+  ModelDefinition file = law_model();
+  file.uncertainty.static_defect = 0.3;
+  const auto warning = Contains(test::Says("delta-p is not determined"));
+  EXPECT_THAT(process_flight(input_, file, output_).notes, testing::Not(warning));
+  file.uncertainty.static_defect = 4.0;
+  const ProcessSummary summary = process_flight(input_, file, output_);
+  EXPECT_NEAR(summary.defect_uncertainty, 4.0, 0.01) << "the sensors add less than 0.01 hPa";
+  EXPECT_THAT(summary.notes, warning);
+  EXPECT_THAT(format_defect(summary), HasSubstr("4.00 hPa"));
+}
+
 // Kelvin labelled degrees Celsius: the recovery temperature is possible, the ambient one is not.
 TEST_F(Process, ThermometerInAWrongUnitIsNamed) {
   for (const double offset : {0.0, 273.15}) {

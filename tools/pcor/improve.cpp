@@ -33,6 +33,11 @@ struct ImproveArguments {
 };
 
 std::string next_step(const Improvement& improvement, const ImproveArguments& options) {
+  constexpr double max_error = 1.0;  // of delta-p, hPa, as in a refit
+  if (improvement.fit.defect_error > max_error)
+    return fmt::format(
+        "The flights do not determine delta-p: its standard error is {:.2f} hPa. Give a further --reference",
+        improvement.fit.defect_error);
   return "To apply it: " + process_command(options.comparison.flights, improvement.model, options.output,
                                            options.comparison.timestamp_alignment);
 }

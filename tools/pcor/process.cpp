@@ -118,10 +118,8 @@ void print(const ProcessedFlight& of) {
       summary.rate == 1 ? "" : "s");
   say("corrected {} of {} samples", summary.corrected, summary.samples);
   if (summary.in_flight > 0) {
-    say("; in flight (dynamic pressure of {:.0f} hPa and more) {} with delta-p {:.2f} hPa on average, {:.2f} "
-        "to {:.2f} hPa",
-        summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.min_defect,
-        summary.max_defect);
+    say("; in flight (dynamic pressure of {:.0f} hPa and more) {} with {}", summary.flying_dynamic_pressure,
+        summary.in_flight, format_defect(summary));
   } else if (summary.corrected > 0) {
     say("; all of them on the ground (dynamic pressure below {:.0f} hPa)", summary.flying_dynamic_pressure);
   }

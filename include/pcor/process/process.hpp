@@ -65,6 +65,8 @@ struct ProcessSummary {
   double mean_defect = 0.0;   ///< mean delta-p applied in flight, hPa; NaN if no sample was corrected
   double min_defect = 0.0;    ///< minimum in flight, hPa
   double max_defect = 0.0;    ///< maximum in flight, hPa
+  /// Mean standard uncertainty of delta-p in flight, hPa; NaN if the model or the options state none.
+  double defect_uncertainty = missing<double>();
   /// Samples with each quality bit, in flight and on the ground.
   std::array<std::size_t, quality_info.size()> flagged{};
   std::vector<OutsideSpan> outside{};  ///< spans without stated uncertainties; of the domain: in flight
@@ -90,6 +92,7 @@ void describe(const ProcessSummary& self, Field& field) {
     delta_p("mean", self.mean_defect, "mean", "hPa");
     delta_p("least", self.min_defect, "minimum", "hPa");
     delta_p("greatest", self.max_defect, "maximum", "hPa");
+    delta_p("uncertainty", self.defect_uncertainty, "mean standard uncertainty; null if not stated", "hPa");
   });
   field("flags", field.named(quality_info, self.flagged), "samples with each quality bit");
   field.list("outside", self.outside, "spans for which the law was not fitted",
@@ -101,6 +104,10 @@ void describe(const ProcessSummary& self, Field& field) {
   field("variables", self.outputs, "derived variables of the output");
   field("notes", self.notes, "notes on the flight");
 }
+
+/// Text: "delta-p 0.01 hPa on average (-0.18 to 0.27), standard uncertainty 4.40 hPa", or that delta-p is
+/// zero.
+std::string format_defect(const ProcessSummary& summary);
 
 /// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
 /// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
