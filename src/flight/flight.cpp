@@ -232,18 +232,28 @@ struct Flight::Implementation {
 
   // Error for a variable of the model that is absent from the file, with the time series that could replace
   // it: series whose unit converts to `requested` and whose name is similar to `name`; if no name is similar,
-  // up to six series whose long names share most words with the role.
+  // up to six series whose long names share most words with the role. Corrected pressures are not proposed.
   [[noreturn]] void refuse_missing(const std::string& name, const std::string& requested,
                                    const std::string& role) {
     std::vector<const VariableInfo*> fitting;
     std::vector<std::string> namesakes;
+    std::vector<std::string> corrected;  // pressures that a law would correct a second time
+    // The unit of a ratio is that of many other variables.
+    const bool is_ratio = is_convertible(requested, "1") && !is_angle(requested);
+    // Files call the temperature of the recovery probe "total".
+    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const VariableInfo& each = variable(i).info;
       if (!each.is_series || !is_convertible(each.units, requested) ||
           is_angle(each.units) != is_angle(requested))
         continue;
-      fitting.push_back(&each);
-      if (each.name.compare(0, 2, name, 0, 2) == 0) namesakes.push_back(each.name);
+      const bool is_namesake = each.name.compare(0, 2, name, 0, 2) == 0;
+      if (requested == "hPa" && strcasestr((" " + each.long_name).c_str(), " corrected") != nullptr) {
+        if (is_namesake) corrected.push_back(each.name);
+        continue;
+      }
+      if (!is_ratio || is_namesake || shared_words(words, each.long_name) > 0) fitting.push_back(&each);
+      if (is_namesake) namesakes.push_back(each.name);
     }
     const std::vector<std::string> alike = suggest(name, namesakes);
     const std::string shown = shortened(name);
@@ -252,6 +262,15 @@ struct Flight::Implementation {
                    ": {} is not in this file; it has {}; if that is the same measurement, change {} in the "
                    "[variables] of the model that names it",
                    shown, fmt::format("{}", fmt::join(alike, ", ")), role);
+    if (!corrected.empty() || (fitting.empty() && is_ratio))
+      file->refuse(Error::Code::variable,
+                   ": {} ({} of the model) is not in this file{}; give another model for this flight, see "
+                   "pcor inspect {}",
+                   shown, role,
+                   corrected.empty()
+                       ? ""
+                       : fmt::format("; it has only {}, already corrected", fmt::join(corrected, ", ")),
+                   shell_path(path()));
     if (fitting.empty())
       file->refuse(Error::Code::variable,
                    ": {} ({} of the model) is not in this file; it has no time series in {} or a unit that "
@@ -259,8 +278,6 @@ struct Flight::Implementation {
                    shown, role, requested, shell_path(path()));
 
     constexpr std::size_t max_named = 6;
-    // Files call the temperature of the recovery probe "total".
-    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
     std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
       return shared_words(words, a->long_name) > shared_words(words, b->long_name);
     });

@@ -16,6 +16,7 @@
 #include "inspect/plausibility.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "roles/computed_from.hpp"
+#include "roles/model_inputs.hpp"
 #include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
@@ -192,7 +193,7 @@ class Look {
     } else if (has(Quantity::attack)) {
       model.model.effects.push_back(neutral_effect("static-attack"));
     }
-    model.law.source = "no law yet: all coefficients are zero until a refit";
+    model.law.source = source_without_law;
     result_.model = std::move(model);
   }
 

@@ -469,8 +469,10 @@ class Processing {
           "determines them; the pressures of the output are the {} {} and {}",
           is_corrected ? "archived" : "recorded", static_pressure, dynamic_pressure);
     } else if (is_corrected) {
-      note("{} and {} were corrected by the archive; the model corrects the remaining error", static_pressure,
-           dynamic_pressure);
+      note(
+          "{} and {} were corrected by the archive; only a model that was fitted to them corrects the "
+          "remaining error",
+          static_pressure, dynamic_pressure);
     }
   }
 

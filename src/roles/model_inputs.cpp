@@ -72,6 +72,37 @@ void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& note
                         name, variable.long_name.empty() ? "air_temperature" : variable.long_name));
 }
 
+/// Whether the first of the models of a fit was one without law, so that the fit is to these variables.
+bool began_without_law(const ModelDefinition& file) {
+  std::string source = file.law.source;
+  if (const auto* const before = find_entry<ProvenanceList>(file.provenance, "before");
+      before != nullptr && !before->empty()) {
+    const auto* const first = std::get_if<Provenance>(&before->front());
+    const auto* const text = first == nullptr ? nullptr : find_entry<std::string>(*first, "source");
+    if (text != nullptr) source = *text;
+  }
+  return source == source_without_law;
+}
+
+/// Warns if the file calls a pressure of the model corrected, or that of the cabin.
+void note_wrong_pressure(const Flight& flight, const ModelDefinition& file, Notes& notes) {
+  for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+    const std::string name = file.variable_of(role);
+    if (!flight.has(name)) continue;
+    const std::string& described = flight.variable(name).long_name;
+    const std::vector<std::string> words = plain_words(described);
+    const auto says = [&words](const char* word) {
+      return std::find(words.begin(), words.end(), word) != words.end();
+    };
+    if (!says("cabin") && (!says("corrected") || began_without_law(file))) continue;
+    warn_once(notes,
+              fmt::format("name another variable than {} as {} in [variables]: the file describes it as "
+                          "'{}'{}",
+                          name, info_of(role).name, described,
+                          says("cabin") ? "" : ", so the model would correct it a second time"));
+  }
+}
+
 /// Whether model and flight state different aircraft.
 bool are_of_two_aircraft(const ModelDefinition& file, const Flight& flight) {
   return !file.model.aircraft.empty() && !flight.aircraft().empty() && !is_of_aircraft(file, flight);
@@ -101,6 +132,7 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
                                      const std::vector<Quantity>& roles, Notes& notes) {
   require_possible_pressure(flight, file, notes);
   note_ambient(flight, file, notes);
+  note_wrong_pressure(flight, file, notes);
   const VariableNaming& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
     const QuantityInfo& info = info_of(role);

@@ -532,7 +532,8 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
     maker.series("QCFK", "K", {1});
     maker.text(maker.series("ATX", "degC", {1}), "long_name", "Ambient");
     maker.series("RSTB1", "degC", {1});
-    maker.series("COUNTS", "cnts", {1});
+    maker.series("COUNTS", "1", {1});
+    maker.text(maker.series("PSXC", "hPa", {1}), "long_name", "Corrected Static Pressure, Reference");
     for (const char* name : {"TTRR", "TTRL", "TTWH"})
       maker.text(maker.series(name, "C", {1}), "long_name", "Total Temperature");
   });
@@ -549,6 +550,11 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
       << "the words of the role first";
   EXPECT_THAT(refusal_of("ALT", "degree", "attack"),
               IsError(Error::Code::variable, "ALT", "attack", "degree", "[variables]"));
+  EXPECT_THAT(refusal_of("PSF", "hPa", "static_pressure"),
+              IsError(Error::Code::variable, "PSF", "only PSXC, already corrected", "pcor inspect"));
+  EXPECT_THAT(refusal_of("ENGTRQ", "percent", "engine_torque")->what(),
+              testing::Not(testing::HasSubstr("COUNTS")))
+      << "a ratio: the unit is no sign";
   EXPECT_STREQ(error_of([&] { flight.conversion("QCF", "hPa"); })->what(),
                error_of([&] { flight.variable("QCF"); })->what())
       << "no role, so no model to change";

@@ -70,5 +70,29 @@ TEST(ModelInputs, AmbientTemperatureAsRecoveryTemperatureGivesAWarning) {
   EXPECT_EQ(warnings("", ""), 0);
 }
 
+// delta-p was added to a pressure that had it already.
+TEST(ModelInputs, CorrectedOrCabinPressureGivesAWarning) {
+  const auto warnings = [](const std::string& long_name, const std::string& source) {
+    const test::TemporaryDirectory folder;
+    const std::filesystem::path path = folder.path() / "flight.nc";
+    {
+      test::NetcdfMaker maker(path);
+      maker.time({100, 101});
+      maker.text(maker.series("P", "hPa", {850, 851}), "long_name", long_name);
+      maker.series("QCF", "hPa", {60, 61});
+    }
+    ModelDefinition file;
+    file.variables = {{Quantity::static_pressure, "P"}, {Quantity::dynamic_pressure, "QCF"}};
+    file.law.source = source;
+    Notes notes;
+    model_inputs(Flight(path), file, chain_of(file.model, file.roles()), file.roles(), notes);
+    return notes.size();
+  };
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", "Cooper (2014)"), 1U);
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", source_without_law), 0U);
+  EXPECT_EQ(warnings("Interior Cabin Static Pressure", source_without_law), 1U);
+  EXPECT_EQ(warnings("Raw Static Pressure, Fuselage", "Cooper (2014)"), 0U);
+}
+
 }  // namespace
 }  // namespace pcor::internal
