@@ -121,6 +121,16 @@ class Add(DiagnosisTest):
         model = self.add("aircraft-step:since=4338.5", "--flight", ONE)
         self.assertEqual(model["variables"]["date"], "Time")
         self.assertEqual(model["effect"][-1]["parameters"], {"step": 0.0, "since": 4338.5})
+        dated = self.add("aircraft-step:since=2011-11-17", "--flight", ONE)
+        self.assertEqual(dated["effect"][-1]["parameters"]["since"], 4338.0)
+        self.refused("add", "aircraft-step", "-m", self.model(), "-o", self.path / "no.toml", words=["since=2011-11-17"])
+
+    def test_a_calibration_is_fitted_by_temperature(self):
+        """A refit of delta-p put its coefficients to their bounds."""
+        text = self.done("add", "temp-calibration", "-m", self.model(), "-o", self.path / "out.toml").stdout
+        self.assertIn("temperature IN.nc", text)
+        self.assertNotIn("refit", text)
+        self.assertEqual(tomllib.loads((self.path / "out.toml").read_text())["effect"][-1]["fixed"], ["a0", "a1", "a2"])
 
     def test_an_added_effect_is_neutral(self):
         """Neutral coefficients change no bit of a residual."""
@@ -141,7 +151,8 @@ class Add(DiagnosisTest):
                 if any(f'id = "{effect["id"]}"' in line for line in MODEL.splitlines()):
                     continue
                 output = self.path / "out.toml"
-                result = self.run_tool("add", effect["id"], "-m", self.model(), "--flight", ONE, "-o", output)
+                date = ":since=2011-11-17" if effect["id"] == "aircraft-step" else ""
+                result = self.run_tool("add", effect["id"] + date, "-m", self.model(), "--flight", ONE, "-o", output)
                 if result.returncode == 0:
                     self.assertIn(effect["id"], [each["id"] for each in tomllib.loads(output.read_text())["effect"]])
                     output.unlink()

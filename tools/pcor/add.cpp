@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -51,6 +52,11 @@ ModelEffect own_effect(const AddArguments& options, const std::vector<std::strin
   return effect;
 }
 
+/// GPS heights determine it, delta-p does not.
+bool is_fitted_by_temperature(const ModelEffect& effect) {
+  return effect.id == pcor::effects::TempCalibration::info().id;
+}
+
 /// JSON result of the command.
 struct Extension {
   std::vector<ModelEffect> added{};
@@ -87,16 +93,26 @@ void print(const ModelDefinition& extended, const Extension& extension, const Ad
         start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
                                     extended.fit(i, k).fixed ? " (fixed)" : ""));
     }
+    std::string formula = info ? std::string(info->formula) : effect.formula;
+    if (const Scaling& scaling = effect.scaling;
+        scaling.static_pressure != 0 || scaling.dynamic_pressure != 0)
+      formula +=
+          fmt::format(" * (p/700 hPa)^{} * (q/70 hPa)^{}", scaling.static_pressure, scaling.dynamic_pressure);
     say("{:<20} {:<15} {:<48} {}\n", effect.id, info_of(info ? info->location : effect.location).name,
-        info ? std::string(info->formula) : effect.formula, fmt::join(start, ", "));
+        formula, fmt::join(start, ", "));
   }
   for (const auto& [role, variable] : extension.variables)
     say("variable selected: {} = \"{}\"\n", role, variable);
   say("\n");
   say_written({options.output, options.common.json});
   const bool has_laser = extended.variables.count(Quantity::lams_airspeed) != 0;
-  say("To fit it: {} refit {} -m {}{} -o {}\n", program(),
-      options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output),
+  const std::string flight = options.flight.empty() ? "IN.nc" : shell_path(options.flight);
+  const std::vector<ModelEffect>& added = extension.added;
+  if (std::any_of(added.begin(), added.end(), is_fitted_by_temperature))
+    say("To fit the calibration of the temperature: {} temperature {} -m {} -o {}\n", program(), flight,
+        shell_path(options.output), output_file("calibrated.toml", {options.model, options.output}));
+  if (std::all_of(added.begin(), added.end(), is_fitted_by_temperature)) return;
+  say("To fit it: {} refit {} -m {}{} -o {}\n", program(), flight, shell_path(options.output),
       has_laser ? "" : " --reference static:OTHER.toml",
       output_file("fitted.toml", {options.model, options.output}));
 }
@@ -125,7 +141,11 @@ void run(const AddArguments& options) {
       effects.push_back(surface ? *surface : shaped_effect(id));
     }
   }
-  const ModelDefinition extended = add_effects(model, effects, variables, flight);
+  ModelDefinition extended = add_effects(model, effects, variables, flight);
+  for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
+    if (!is_fitted_by_temperature(extended.model.effects[i])) continue;
+    for (ParameterFit& each : extended.fits[i]) each.fixed = true;
+  }
   OutputTransaction together;
   deliver(extended, options.output, inputs);
   const auto first_added = static_cast<std::ptrdiff_t>(model.model.effects.size());
@@ -147,10 +167,13 @@ std::function<void()> add_add(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "add", "Add effects with neutral coefficients to a model, for a subsequent refit");
   command
-      ->add_option("effects", options->effects,
-                   "effects of the catalogue, with their shape if it differs from the default, such as "
-                   "static-transonic:onset=0.8; or static-surface, static-surface-beta; or with --formula "
-                   "the name of a user-defined effect")
+      ->add_option(
+          "effects", options->effects,
+          "effects of the catalogue, with their shape or scaling if it differs from the default, such "
+          "as static-transonic:onset=0.8, aircraft-step:since=2011-11-17 or "
+          "static-mach:static_pressure=-1,dynamic_pressure=1 (powers of p/700 hPa and q/70 hPa); or "
+          "static-surface, static-surface-beta; or with --formula "
+          "the name of a user-defined effect")
       ->required()
       ->type_name("EFFECT...");
   command->add_option("-m,--model", options->model, "the model to extend")

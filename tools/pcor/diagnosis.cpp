@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <ctime>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -46,6 +47,15 @@ double number_in(const std::string& text, const std::string& argument) {
   return value;
 }
 
+/// Value of a shape parameter; days since 2000-01-01 also as a date.
+double value_of(const ParameterInfo& shape, const std::string& text, const std::string& argument) {
+  std::tm date{};
+  const char* const rest = shape.unit == "d" ? strptime(text.c_str(), "%Y-%m-%d", &date) : nullptr;
+  if (rest == nullptr || *rest != '\0') return number_in(text, argument);
+  constexpr double seconds_of_day = 86400.0, days_to_2000 = 10957.0;
+  return static_cast<double>(timegm(&date)) / seconds_of_day - days_to_2000;
+}
+
 constexpr std::pair<std::string_view, int Scaling::*> powers[]{
     {"static_pressure", &Scaling::static_pressure}, {"dynamic_pressure", &Scaling::dynamic_pressure}};
 
@@ -67,7 +77,7 @@ void set_shape(ModelEffect& effect, const std::string& name, const std::string& 
     if (!info.parameters[i].shape) continue;
     const ParameterInfo& shape = info.parameters[i];
     if (shape.name == name) {
-      effect.parameters[i] = number_in(value, argument);
+      effect.parameters[i] = value_of(shape, value, argument);
       if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
       throw Error(Error::Code::usage, fmt::format("{}: {} = {} is outside [{}, {}]; give a value inside",
                                                   argument, name, value, shape.lower, shape.upper));
@@ -130,6 +140,11 @@ ModelEffect shaped_effect(const std::string& argument) {
                   fmt::format("{}: '{}' is not a shape; write {}:NAME=NUMBER", argument, shape, id));
     set_shape(effect, shape.substr(0, sign), shape.substr(sign + 1), argument);
   }
+  if (argument == effects::AircraftStep::info().id)
+    throw Error(
+        Error::Code::usage,
+        fmt::format("{0}: the date of the change is missing; write, for example, {0}:since=2011-11-17",
+                    argument));
   return effect;
 }
 
