@@ -305,12 +305,17 @@ class Processing {
 
   /// Notes the samples in flight outside the domain of the law, known after the run.
   void note_domain() {
+    for (std::size_t i = 0; i < std::min(flaps_.size(), outside_.size()); ++i)
+      outside_[i] = outside_[i] && !flaps_[i];
     const auto count = std::count(outside_.begin(), outside_.end(), true);
     if (count == 0) return;
     // Values that cross a limit many times in a minute give one span.
     const auto records_per_minute = static_cast<std::size_t>(60.0 / flight_.time().step);
-    note("delta-p is extrapolated in {} of {} records, outside the domain of the law: {}", count,
-         outside_.size(), add_outside("outside the domain", outside_, records_per_minute));
+    note(
+        "delta-p is extrapolated in {}{} of {} records (bit outside_domain), in flight outside the domain of "
+        "the law; these records have no uncertainty: {}",
+        flaps_.empty() ? "" : "another ", count, outside_.size(),
+        add_outside("outside the domain", outside_, records_per_minute));
   }
 
   void choose_rate() {
@@ -739,8 +744,8 @@ class Processing {
   std::vector<bool> frozen_;                 // records in which any sensor is frozen; empty: none
   std::vector<bool> flaps_;                  // records outside the law by extended flaps; empty: none
   std::vector<bool> outside_;                // records in flight outside the domain of the law; empty: none
-  std::size_t uncertain_samples_ = 0;        // in flight, with an uncertainty of delta-p
-  double sum_of_uncertainties_ = 0.0;        // of delta-p in these samples, hPa
+  std::size_t uncertain_samples_ = 0;        // samples in flight with an uncertainty of delta-p
+  double sum_of_uncertainties_ = 0.0;        // sum of the uncertainties of delta-p, hPa
   bool did_not_fly_ = false;                 // the dynamic pressure stays below that of flight
   std::size_t noted_ = 0;                    // samples of which results are available
   std::map<Quantity, std::string> names_;    // names of inputs and results in the output

@@ -179,7 +179,7 @@ class Table {
     Notes notes;
     for (const auto& [note, of] : names) {
       const std::string whose =
-          of.size() == 1 ? of.front() : fmt::format("{} of {} flights", of.size(), flights.size());
+          of.size() == 1 ? of.front() : fmt::format("each of {} of {} flights", of.size(), flights.size());
       notes.emplace_back(note.severity, fmt::format("{}: {}", whose, note.text));
     }
     say_notes(notes, max_notes);

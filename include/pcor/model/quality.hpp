@@ -43,9 +43,11 @@ struct QualityInfo {
 };
 
 inline constexpr std::array<QualityInfo, 21> quality_info{{
-    {Quality::static_pressure_missing, "static_pressure_missing", "no static pressure: no results",
+    {Quality::static_pressure_missing, "static_pressure_missing",
+     "no static pressure within +-2000 hPa: no results",
      "no static pressure, or outside the plausible range: nothing is derived"},
-    {Quality::dynamic_pressure_missing, "dynamic_pressure_missing", "no dynamic pressure: no results",
+    {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
+     "no dynamic pressure within +-2000 hPa: no results",
      "no dynamic pressure, or outside the plausible range: nothing is derived"},
     {Quality::impossible_static_pressure, "impossible_static_pressure",
      "impossible static pressure: no results",

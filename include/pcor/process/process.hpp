@@ -65,7 +65,7 @@ struct ProcessSummary {
   double mean_defect = 0.0;   ///< mean delta-p applied in flight, hPa; NaN if no sample was corrected
   double min_defect = 0.0;    ///< minimum in flight, hPa
   double max_defect = 0.0;    ///< maximum in flight, hPa
-  /// Mean standard uncertainty of delta-p in flight, hPa; NaN if the model or the options state none.
+  /// Mean standard uncertainty of delta-p in flight, hPa; NaN if it is not stated.
   double defect_uncertainty = missing<double>();
   /// Samples with each quality bit, in flight and on the ground.
   std::array<std::size_t, quality_info.size()> flagged{};
