@@ -185,7 +185,8 @@ std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described&
         values.end());
     if (values.empty()) return std::nullopt;
     const auto [minimum, maximum] = std::minmax_element(values.begin(), values.end());
-    const std::string range = fmt::format("{:.5g} to {:.5g} {}", *minimum, *maximum, unit);
+    const std::string range =
+        fmt::format("{:.5g} to {:.5g}{}", *minimum, *maximum, unit == "1" ? "" : " " + unit);
     const double middle = median(std::move(values));
     if (!(middle >= sign.minimum && middle <= sign.maximum)) return std::nullopt;
     const std::string who = by_standard_name ? fmt::format("its standard_name is {}", variable.standard_name)

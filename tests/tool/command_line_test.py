@@ -139,6 +139,7 @@ class Outputs(ComparisonTest):
         text = self.done(*command, cwd=self.path).stdout
         self.assertIn("\noverwrote o.toml\n", text)
         self.assertIn("\nwrote r.json\n", text)
+        self.refused("inspect", ONE, "--write-model", self.path / "o.toml", words=["o.toml", "fitted"])
         before = comparison_test.contents(self.path)
         result = self.run_tool(*command, "--no-clobber", cwd=self.path)
         self.assertEqual((result.returncode, result.stdout, result.stderr.count("\n")), (1, "", 1))
@@ -197,7 +198,7 @@ class Hints(ComparisonTest):
     def test_another_name_has_the_right_one(self):
         compare = ("compare", ONE, "-m", self.model())
         for words, meant in ((("--figures",), "pcor-figures"), (("--processes", "2"), "pcor_mpi"), (("--html", "a.html"), "--report"),
-                             (("--plot",), "--report")):
+                             (("--plot",), "--report"), (("--from", "14:30"), "--intervals")):
             self.assertIn(f"did you mean {meant}?", self.refused(*compare, *words, words=[words[0]], status=2))
         self.assertNotIn("--report", self.refused("add", "--html", words=["--html"], status=2))
         self.assertIn("did you mean compare?", self.refused("evaluate", ONE, words=["evaluate"], status=2))

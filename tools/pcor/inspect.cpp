@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -182,8 +183,8 @@ void print_roles(const Inspection& flight) {
 
 /// Variables that may serve a role, whether it has a variable or not.
 void print_candidates(const Inspection& flight) {
-  std::map<std::string, std::string> role_of;
-  for (const InspectedRole& role : flight.roles) role_of[role.role] = role.variable;
+  std::set<std::string> missing;  // a value that is computed, such as mach, is not missing
+  for (const MissingRole& role : flight.missing) missing.insert(role.role);
   for (const InspectedRole& role : flight.roles) {
     if (!role.why.empty())
       say("{} is {}: {}{}\n", role.variable, role.role, role.why,
@@ -192,7 +193,7 @@ void print_candidates(const Inspection& flight) {
   bool any = false;
   for (const auto& [role, candidates] : flight.candidates) {
     for (const InspectedCandidate& each : candidates) {
-      if (role_of.count(role) != 0) continue;
+      if (missing.count(role) == 0) continue;
       if (!any) say("\n{:<33} {:<12} {:>5}  evidence\n", "candidates, not used", "variable", "score");
       any = true;
       say("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
@@ -252,6 +253,19 @@ void print_by_gps(const GpsDesign& gps) {
       std::isnan(gps.attack) ? "" : ", change with attack " + text(gps.attack, "a pitch manoeuvre"));
 }
 
+/// Whether another assigned role excludes this one from a model.
+bool is_replaced(Quantity role, const std::vector<InspectedRole>& assigned) {
+  constexpr std::pair<Quantity, Quantity> alternatives[]{
+      {Quantity::ambient_temperature, Quantity::recovery_temperature},
+      {Quantity::vapor_pressure, Quantity::dew_point}};
+  return std::any_of(std::begin(alternatives), std::end(alternatives), [&](const auto& pair) {
+    if (role != pair.first && role != pair.second) return false;
+    const std::string_view other = info_of(role == pair.first ? pair.second : pair.first).name;
+    return std::any_of(assigned.begin(), assigned.end(),
+                       [other](const InspectedRole& each) { return each.role == other; });
+  });
+}
+
 /// Pressures, numbers of roles and models, problems and missing inputs.
 void print_short(const Inspection& flight) {
   constexpr std::size_t max_rows = 3;
@@ -263,10 +277,17 @@ void print_short(const Inspection& flight) {
                                                             fmt::join(role.others, " ")));
   }
   if (!pressures.empty()) say("{}\n", fmt::join(pressures, ", "));
-  std::vector<std::string> missing;
-  for (const MissingRole& role : flight.missing) missing.push_back(role.role);
-  say("{} roles assigned; missing: {}\n", flight.roles.size(),
-      missing.empty() ? "no role" : fmt::format("{}", fmt::join(missing, ", ")));
+  std::vector<std::string> missing, series;
+  for (const MissingRole& role : flight.missing) {
+    const Quantity quantity = quantity_named(role.role);
+    if (quantity == Quantity::count || !is_role(quantity))
+      series.push_back(role.role);
+    else if (!is_replaced(quantity, flight.roles))
+      missing.push_back(role.role);
+  }
+  say("{} roles assigned; missing: {}{}\n", flight.roles.size(),
+      missing.empty() ? "no role" : fmt::format("{}", fmt::join(missing, ", ")),
+      series.empty() ? "" : fmt::format("; missing series that no model reads: {}", fmt::join(series, ", ")));
   std::size_t shown = 0;
   for (std::size_t i = 0; i < flight.problems.size() && shown < max_rows; ++i) {
     const Problem& problem = flight.problems[i];
@@ -344,7 +365,8 @@ void print_next(const InspectArguments& options, const Inspection& flight) {
     say("This file allows no correction: {}.\n", flight.why_no_model);
     return;
   }
-  say("Next{}{}:\n", flight.next.size() == 1 ? "" : ", in this order", doubts_of_next(flight));
+  say("Next{}{}{}:\n", options.flights.size() == 1 ? "" : " for " + flight.path,
+      flight.next.size() == 1 ? "" : ", in this order", doubts_of_next(flight));
   for (const std::string& each : flight.next) say("  {}\n", each);
   if (const std::string laser = use_of_laser(options, flight); !laser.empty()) say("{}\n", laser);
 }
@@ -374,6 +396,21 @@ std::vector<Inspection> look(const InspectArguments& options, bool text) {
     throw Error(Error::Code::file,
                 fmt::format("all {} flights are unreadable; check the files", options.flights.size()));
   return all;
+}
+
+/// @throws Error if the file is a fitted model, whose coefficients would be lost
+void keep_fitted_model(const std::string& path) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code)) return;
+  ModelDefinition model;
+  try {
+    model = read_model(path);
+  } catch (const Error&) {
+    return;  // another file
+  }
+  if (model.provenance.empty() && model.covariance.parameters.empty()) return;
+  throw Error(Error::Code::usage,
+              fmt::format("{}: this is a fitted model; give another name to --write-model", path));
 }
 
 /// Writes the model, with candidate variables of open roles as comments.
@@ -414,6 +451,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
 void run(const InspectArguments& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
   prepare_outputs(options.common, {options.model}, inputs);
+  keep_fitted_model(options.model);
   JsonResult json(options.common);
   const bool text = wants_text(options.common, {options.model});
   const Inspections result{look(options, text)};

@@ -19,11 +19,14 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }
 
 /// Names that users try, and what does their work.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 5> other_names{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> other_names{{
     {"--figures", "pcor-figures"},
     {"--processes", "pcor_mpi"},
     {"--html", "--report"},
     {"--plot", "--report"},
+    {"--from", "--intervals"},
+    {"--start", "--intervals"},
+    {"--end", "--intervals"},
     {"evaluate", "compare"},
 }};
 
