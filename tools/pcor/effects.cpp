@@ -30,8 +30,8 @@ const EffectInfo& find(const std::string& id) {
   for (const EffectWithoutTrace& effect : effects_without_trace) ids.emplace_back(effect.id);
   const std::string hint = did_you_mean(id, ids);
   throw Error(Error::Code::usage,
-              fmt::format("the catalogue has no effect '{}' (a formula is in the [[effect]] "
-                          "of its model){}{} to list the catalogue: {} effects",
+              fmt::format("the catalogue has no effect '{}' (only a model file describes an effect with a "
+                          "formula){}{} to list the catalogue: {} effects",
                           id, hint.empty() ? ";" : "; ", hint, program()));
 }
 
