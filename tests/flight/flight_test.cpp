@@ -554,7 +554,7 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
               IsError(Error::Code::variable, "PSF", "only PSXC, already corrected", "pcor inspect"));
   EXPECT_THAT(refusal_of("ENGTRQ", "percent", "engine_torque")->what(),
               testing::Not(testing::HasSubstr("COUNTS")))
-      << "a ratio: the unit is no sign";
+      << "many variables are ratios";
   EXPECT_STREQ(error_of([&] { flight.conversion("QCF", "hPa"); })->what(),
                error_of([&] { flight.variable("QCF"); })->what())
       << "no role, so no model to change";
