@@ -714,6 +714,9 @@ TEST(NimbusDefaults, AreRefusedIfUnused) {
       error_of({"PCOR.STATC-ALPHA.A1"}, some),
       "the defaults file has 'PCOR.STATC-ALPHA.A1', which no coefficient of the model reads; the nearest "
       "is 'PCOR.static-alpha.a1'");
+  // `read_defaults` does not request mixed case.
+  EXPECT_NE(error_of({"PCOR.Static-Qp.A2"}, some), "");
+  EXPECT_NE(error_of({"pcor.static-qp.a2"}, some), "");
   const auto all = pcor::Overrides::all;
   EXPECT_EQ(error_of({"PCOR.STATIC-CONSTANT.A0", "PCOR.static-alpha.a1", "PCOR.STATIC-QP.A2"}, all), "");
   EXPECT_EQ(

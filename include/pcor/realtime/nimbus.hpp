@@ -317,17 +317,27 @@ std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
   return replaced;
 }
 
-/// Unused overrides: names among `keys` of a defaults file that begin with `prefix` and a point but do not
-/// match a coefficient of `model`, case-insensitive. A host should report them and stop.
+namespace detail {
+
+// True for the two spellings of a coefficient that `read_defaults` requests.
+inline bool is_read_as(const std::string& coefficient, const std::string& key) {
+  return key == coefficient || key == in_capitals(coefficient);
+}
+
+}  // namespace detail
+
+/// Unused overrides: names among `keys` of a defaults file that begin with `prefix`, case-insensitive, and a
+/// point but are not a coefficient of `model`, in original or upper case. A host should report them and stop.
 inline std::vector<std::string> unread_defaults(const Model& model, const std::string& prefix,
                                                 const std::vector<std::string>& keys) {
-  std::vector<std::string> known = default_keys(model, prefix);
-  std::transform(known.begin(), known.end(), known.begin(), in_capitals);
+  const std::vector<std::string> known = default_keys(model, prefix);
   std::vector<std::string> unread;
   for (const std::string& key : keys) {
     const bool is_ours = in_capitals(key).rfind(in_capitals(prefix) + ".", 0) == 0;
-    if (is_ours && std::find(known.begin(), known.end(), in_capitals(key)) == known.end())
-      unread.push_back(key);
+    const bool is_read = std::any_of(known.begin(), known.end(), [&key](const std::string& coefficient) {
+      return detail::is_read_as(coefficient, key);
+    });
+    if (is_ours && !is_read) unread.push_back(key);
   }
   return unread;
 }
@@ -335,9 +345,8 @@ inline std::vector<std::string> unread_defaults(const Model& model, const std::s
 /// Whether a defaults file may leave coefficients of a model to the model (`some`).
 enum class Overrides { some, all };
 
-/// False if one of the names `keys` of a defaults file that begin with `prefix` and a point does not match a
-/// coefficient of `model`, or if `all` are expected and one is missing. `error` then names it, and the
-/// nearest name.
+/// False if `keys` of a defaults file have `unread_defaults`, or if `all` coefficients of `model` are
+/// expected and one is missing. `error` then names it, and the nearest name.
 inline bool check_defaults(const Model& model, const std::string& prefix,
                            const std::vector<std::string>& keys, Overrides expected, std::string* error) {
   const std::vector<std::string> coefficients = default_keys(model, prefix);
@@ -355,7 +364,7 @@ inline bool check_defaults(const Model& model, const std::string& prefix,
   if (expected == Overrides::some) return true;
   for (const std::string& coefficient : coefficients) {
     const bool is_there = std::any_of(keys.begin(), keys.end(), [&coefficient](const std::string& key) {
-      return in_capitals(key) == in_capitals(coefficient);
+      return detail::is_read_as(coefficient, key);
     });
     if (!is_there)
       return fail("the defaults file lacks the coefficient '" + coefficient + "'", coefficient, keys);
