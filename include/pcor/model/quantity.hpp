@@ -158,7 +158,7 @@ inline constexpr std::array<QuantityInfo, quantity_count> quantity_info{{
     {"transducer_temperature", "K", "temperature of the pressure transducers",
      Quantity::transducer_temperature, 100.0, 1000.0},
     {"cabin_pressure", "hPa", "cabin pressure", Quantity::cabin_pressure, -2000.0, 2000.0},
-    {"date", "days since 2000-01-01", "date and time of the sample, UTC", Quantity::date},
+    {"date", "days since 2000-01-01", "date and time of the sample, UTC", Quantity::date, -14610.0, 36525.0},
 
     {"time", "s", "time since the first record", Quantity::time},
     {"dynamic_ratio", "1", "dynamic over static pressure as measured, q_m/p_m", Quantity::dynamic_ratio},
