@@ -358,6 +358,11 @@ class BadInput(DiagnosisTest):
 
     def test_candidates_that_cannot_be_read(self):
         self.both("--candidates", self.path / "none.toml", words=["none.toml", "no such file"])
+        self.both("--candidates", "c130-psfd-eq18", words=["c130-psfd-eq18", "no effect with a formula"])
+
+    def test_excluded_variable_that_no_flight_has(self):
+        self.refused("diagnose", ONE, "-m", self.model(), "--not-variable", "ENGTQR",
+                     words=["--not-variable ENGTQR", "did you mean ENGTRQ"])
 
     def test_formula_with_a_variable_missing_from_the_flight(self):
         self.refuse_add("mine", "--formula", "k * ENGTQR", "--flight", ONE,

@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 
+#include <pcor/base/error.hpp>
+#include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include "communicator.hpp"
@@ -254,10 +256,23 @@ void print(const Diagnosis& diagnosis, const ModelDefinition& model, const Chose
   say("{}\n", next_command(diagnosis, model, options));
 }
 
+/// @throws Error if no flight has a variable of --not-variable
+void require_variables(const std::vector<std::string>& names, const FlightSet& flights) {
+  if (names.empty()) return;
+  const std::vector<std::string> known = variables_of_any(flights);
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const std::string meant = did_you_mean(name, known);
+    throw Error(Error::Code::variable, fmt::format("--not-variable {}: no flight has this variable; {}", name,
+                                                   meant.empty() ? "correct the name" : meant));
+  }
+}
+
 void run(const DiagnoseArguments& options) {
   prepare_outputs(options.common, {}, inputs_of(options));
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
+  require_variables(options.not_variables, flights);
   const ModelDefinition model =
       with_fit_options(read_model_for(options.model, flights, options.common), options.fit);
   const ChosenReferences references = references_to_fit(options.comparison, model, flights);

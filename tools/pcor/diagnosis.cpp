@@ -193,6 +193,13 @@ void require_known_variables(const ModelEffect& effect, const std::string& optio
   }
 }
 
+std::vector<std::string> variables_of_any(const FlightSet& flights) {
+  std::set<std::string> variables;
+  for (const std::vector<std::string>& of_one : flights.variables())
+    variables.insert(of_one.begin(), of_one.end());
+  return {variables.begin(), variables.end()};
+}
+
 std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelDefinition& model,
                                             const FlightSet& flights) {
   std::vector<ModelEffect> candidates;
@@ -201,15 +208,19 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
     return !has_effect(model, id) && std::none_of(candidates.begin(), candidates.end(), same);
   };
   if (!options.file.empty()) {
-    for (const ModelEffect& effect : read_model(options.file).model.effects) {
+    const std::vector<ModelEffect> effects = read_model(options.file).model.effects;
+    if (std::none_of(effects.begin(), effects.end(),
+                     [](const ModelEffect& each) { return each.is_formula(); }))
+      throw Error(Error::Code::usage,
+                  fmt::format("--candidates {}: the model has no effect with a formula, so it adds no "
+                              "candidate; give another model or omit the option",
+                              options.file));
+    for (const ModelEffect& effect : effects) {
       if (effect.is_formula() && is_new(effect.id)) candidates.push_back(effect);
     }
   }
   if (options.formulas.empty()) return candidates;
-  std::set<std::string> of_any;
-  for (const std::vector<std::string>& of_one : flights.variables())
-    of_any.insert(of_one.begin(), of_one.end());
-  const std::vector<std::string> variables(of_any.begin(), of_any.end());
+  const std::vector<std::string> variables = variables_of_any(flights);
   const std::string where = flights.size() == 1 ? flights.path(0).string() : "any of the flights";
   std::vector<std::string> formulas = options.formulas;
   std::sort(formulas.begin(), formulas.end());
@@ -226,7 +237,7 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
 std::string command_line(const CandidateOptions& options) {
   std::string line;
   for (const std::string& formula : options.formulas) line += " " + shell_option("--try", formula);
-  if (!options.file.empty()) line += " " + shell_option("--candidates", options.file);
+  if (!options.file.empty()) line += " --candidates " + model_argument(options.file);
   return line;
 }
 

@@ -31,10 +31,13 @@ struct CandidateOptions {
 
 void add_candidate_options(CLI::App& command, CandidateOptions& options);
 
+/// Names of the variables of all flights, each once.
+std::vector<std::string> variables_of_any(const FlightSet& flights);
+
 /// Formula effects given by the options, except effects of `model`: try-1, try-2 ... on the command line, and
 /// effects in the file of candidates.
-/// @throws Error if a formula cannot be read, with the position in it, or the file cannot be read; or if a
-/// formula of the command line names an unknown quantity or variable.
+/// @throws Error if a formula cannot be read, with the position in it, or the file cannot be read or has no
+/// formula; or if a formula of the command line names an unknown quantity or variable.
 std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelDefinition& model,
                                             const FlightSet& flights);
 

@@ -149,6 +149,7 @@ void take_models_by_name(CLI::App& program) {
   using Find = std::string (*)(const std::string&);
   const std::pair<const char*, Find> options[] = {{"--model", model_file},
                                                   {"--second", model_file},
+                                                  {"--candidates", model_file},
                                                   {"--reference", reference_with_model_file},
                                                   {"scenario", scenario_file}};
   for (CLI::App* const command : program.get_subcommands({})) {

@@ -31,8 +31,8 @@ std::string reference_with_model_file(const std::string& given);
 std::string model_argument(const std::string& file);
 std::string reference_argument(const std::string& reference);
 
-/// Enables names of models in the options --model, --second and --reference of all sub-commands, and names of
-/// scenarios.
+/// Enables names of models in the options --model, --second, --candidates and --reference of all
+/// sub-commands, and names of scenarios.
 void take_models_by_name(CLI::App& program);
 
 }  // namespace pcor::tool
