@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <pcor/base/error.hpp>
@@ -11,6 +12,11 @@
 
 namespace pcor::internal {
 namespace {
+
+bool sees_static_defect(const FitTask& task) {
+  return task.reference.sees_static_defect() ||
+         std::any_of(task.further.begin(), task.further.end(), sees_static_defect);
+}
 
 // Flights hold 32-bit floats: columns that agree to better than their rounding, 6e-8, are one column.
 constexpr double hopeless_condition = 1e7;
@@ -41,8 +47,12 @@ double condition_number(const Reduction& reduction, const FitTask& task,
       throw Error(
           Error::Code::fit,
           fmt::format(
-              "{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}{}",
+              "{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}{}{}",
               to_string(k), to_string(k),
+              sees_static_defect(task)
+                  ? ""
+                  : ", or add a reference other than total: to fit delta-p, which a total "
+                    "pressure does not contain",
               task.model.model.policy.minimum > -infinity
                   ? fmt::format(", unless delta-p is at its minimum, {:g} hPa, because the reference is "
                                 "far below the model: see the bias by compare",

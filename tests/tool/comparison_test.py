@@ -884,6 +884,10 @@ class BadInput(ComparisonTest):
     def test_held_out_flight_of_another_aircraft(self):
         self.refused("refit", ONE, "--holdout", GV, "-m", self.model(), words=["N130AR", "N677F", "one.nc", "gv.nc"])
 
+    def test_total_pressure_does_not_determine_delta_p(self):
+        self.refused("refit", ONE, "-m", self.model(), "--reference", "total:PSFRD+QCFR",
+                     words=["static-constant.a0", "reference other than total:"])
+
     def test_no_such_flight(self):
         self.both(flights=(self.path / "none.nc",), words=["none.nc", "no such file"])
 
