@@ -239,7 +239,7 @@ class OtherAircraft(unittest.TestCase):
         self.assertRegex(result.stderr, r"faam-core\.nc: .*HALO.*static_pressure and dynamic_pressure")
         (self.path / "named.toml").write_text(model.format("faam-cor"))
         result = self.run_tool("compare", "faam-core.nc", "-m", "named.toml", "--reference", "pressure:PS_RVSM", status=1)
-        self.assertIn("there are no roles 'faam-cor'; did you mean", result.stderr)
+        self.assertRegex(result.stderr, "'faam-cor': .*; did you mean")
 
     def test_inspect_uses_the_requested_aircraft_names(self):
         flight = self.json("inspect", "faam-core.nc", "--roles", "ncar")["flights"][0]

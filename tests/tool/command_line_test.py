@@ -239,6 +239,11 @@ class Help(ComparisonTest):
                 self.assertTrue(example.startswith(f"  {TOOL} {command}"), example)
             self.assertNotIn("\n\n\n", text)
 
+    def test_help_precedes_or_follows_the_command(self):
+        for word in ("help", "--help", "-h"):
+            self.assertEqual(self.done(word, "refit").stdout, self.done("refit", "--help").stdout)
+            self.assertEqual(self.done(word).stdout, self.done("--help").stdout)
+
     def test_reference_of_temperature_needs_iterate(self):
         self.assertIn("with --iterate only", self.done("temperature", "--help").stdout)
 

@@ -28,9 +28,8 @@ RARE = {
     "improve": r"unexplained\.(steps|computed)|steps\[\]\.(aliases|rivals|diagnosis\.)",
     "process": r"choices|reason|notes|flights\[\]\.notes",
     "temperature": r"law_errors|flights\[\]\.left_out",
-    "simulate": r"choices",
     # a surface has neither coefficients nor scalings
-    "effects": r"choices|surfaces\[\]\.(parameters|scalings)",
+    "effects": r"surfaces\[\]\.(parameters|scalings)",
     "add": r"choices",
 }
 

@@ -37,8 +37,8 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_list_option(
       command, "--reference", options.references,
       "measurement compared with the model: " + reference_forms() +
-          "; default: lams and, if available, total; compare also height and wind; a flight without "
-          "laser needs this option")
+          "; default: lams and, if recorded, total (the command compare adds height and wind); a flight "
+          "without laser needs this option")
       ->type_name("REFERENCE");
 }
 

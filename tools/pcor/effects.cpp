@@ -203,7 +203,9 @@ std::function<void()> add_effects(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("effects", "List the catalogue of effects, or describe one of them");
   command->add_option("id", options->id, "an effect, e.g. static-lag")->type_name("ID");
-  add_common_options<CatalogueEntry, EffectWithoutTrace, Catalogue>(*command, options->common, false);
+  add_common_options(*command, options->common, false, [] {
+    return KeyLists{json_keys(CatalogueEntry{}), json_keys(EffectWithoutTrace{}), json_keys(Catalogue{})};
+  });
   add_examples(*command, {"effects", "effects static-qp"});
   return [options] { run(*options); };
 }

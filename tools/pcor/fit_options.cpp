@@ -58,8 +58,8 @@ void add_training_options(CLI::App& command, FitOptions& options, const std::str
       ->capture_default_str();
   command.add_flag("--trust-reference", options.trust_reference,
                    "assume exact calibrations of the reference and the thermometer: standard errors exclude "
-                   "their uncertainty ([uncertainty] of the model or default sizes), and effects of the "
-                   "reference are not tested");
+                   "their uncertainty ([uncertainty] of the model or default sizes); improve then tests no "
+                   "effects of the reference");
 }
 
 ModelDefinition with_fit_options(ModelDefinition model, const FitOptions& options) {

@@ -98,17 +98,22 @@ int run(int argc, char** argv) {
   program.footer(
       "delta-p: the correction, hPa, that is added to the static pressure and subtracted from the dynamic "
       "pressure.\nLAMS: the laser air-motion sensor, which measures the airspeed ahead of the "
-      "aircraft.\nFurther terms: docs/glossary.md.\n\nExit status: 0 done, 1 the work could not be done, 2 "
-      "usage.");
+      "aircraft.\nFurther terms: docs/glossary.md.\n\nExit status: 0 done, 2 the command line cannot be "
+      "parsed, 1 any other failure.");
 
   std::vector<std::function<void()>> runs;
   for (const auto add : commands) runs.push_back(add(program));
   take_models_by_name(program);
 
-  const std::vector<std::string> words(argv + 1, argv + argc);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  // "help X" and "--help X" as "X --help".
+  if (!words.empty() && (words[0] == "help" || words[0] == "--help" || words[0] == "-h")) {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
   require_one_command(words);
   try {
-    program.parse(argc, argv);
+    program.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     const std::string misplaced = flights_behind_holdout(program, words);
     if (!misplaced.empty()) throw CLI::ArgumentMismatch(misplaced);
     require_parallel_command(program);

@@ -91,7 +91,8 @@ std::function<void()> add_simulate(CLI::App& program) {
   command->add_option("--seed", options->seed, "seed of the random numbers, overrides the scenario's")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
-  add_common_options<SimulationSummary>(*command, options->common, false);
+  add_common_options(*command, options->common, false,
+                     [] { return KeyLists{json_keys(SimulationSummary{})}; });
   add_examples(*command, {"simulate data/scenarios/c130-hidden.toml -o first.nc",
                           "simulate data/scenarios/c130-hidden.toml --seed 102 -o second.nc"});
   return [options] { run(*options); };

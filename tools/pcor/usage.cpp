@@ -78,8 +78,7 @@ const CLI::App* command_of(const CLI::App& program, const std::vector<std::strin
 std::string usage_message(const CLI::App& program, const std::string& message,
                           const std::vector<std::string>& words) {
   const std::string help_of_all = tool::program() + " --help";
-  if (words.empty() || words.front() == "help")
-    return fmt::format("pcor: no sub-command; to list them: {}", help_of_all);
+  if (words.empty()) return fmt::format("pcor: no sub-command; to list them: {}", help_of_all);
   const CLI::App* const command = command_of(program, words);
   if (command == nullptr && words.front()[0] != '-') {
     std::vector<std::string> names;
