@@ -107,7 +107,7 @@ void require_laser(const ModelDefinition& model, const FlightSet& flights) {
       Error::Code::model,
       fmt::format(
           "{}: the model does not name the laser; add lams_airspeed = \"{}\" and the attack to [variables] "
-          "of a copy of it, or give --reference static:OTHER.toml, pressure:PS, wind or height",
+          "of a copy of it, or give --reference static:OTHER.toml, pressure:VARIABLE, wind or height",
           flights.name(static_cast<std::size_t>(laser - lasers.begin())), *laser));
 }
 

@@ -101,8 +101,8 @@ class EffectReader final : TomlReader {
       if (made[k].quantity == Quantity::count)
         fail(axes[k].position, "there is no quantity {}; give {}", quote(axes[k].key), requested);
       if (!made[k].is_valid())
-        fail(*coefficients, "{} has {} splines; give {} to {}", quote(axes[k].key), count,
-             SurfaceAxis::min_count, SurfaceAxis::max_count);
+        fail(*coefficients, "'coefficients' has {} {}, one for each spline of {}; give {} to {}", count,
+             k == 0 ? "rows" : "columns", quote(axes[k].key), SurfaceAxis::min_count, SurfaceAxis::max_count);
     }
     ModelEffect effect = surface_effect(id, made);
     effect.parameters.clear();

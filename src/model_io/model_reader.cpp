@@ -345,8 +345,7 @@ class Reader final : TomlReader {
           {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = not_negative(entry); }},
           {"note", [&](const Entry& entry) { law.note = text(entry); }}});
     if (last != nullptr && law.valid_to < law.valid_from) {
-      fail(*last, "the domain of the law ends at {}, before its start {}; change one of them", law.valid_to,
-           law.valid_from);
+      fail(*last, "valid_to {} is before valid_from {}; change one of them", law.valid_to, law.valid_from);
     }
   }
 

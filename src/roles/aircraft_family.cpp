@@ -196,7 +196,7 @@ const VariableNaming& family_named(const std::string& name) {
   if (name.size() <= ending.size() || name.substr(name.size() - ending.size()) != ending) {
     const std::string meant = did_you_mean(name, known);
     throw Error(Error::Code::model,
-                fmt::format("there are no roles '{}'; {}", name,
+                fmt::format("roles '{}': there is no such aircraft; {}", name,
                             meant.empty() ? fmt::format("known are {}, and files that end in .toml",
                                                         fmt::join(known, ", "))
                                           : meant));

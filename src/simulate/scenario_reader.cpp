@@ -215,7 +215,8 @@ class Reader final : TomlReader {
   std::string one_of(const Entry& entry, const Names& known) const {
     std::string value = text(entry);
     if (std::find(known.begin(), known.end(), value) == known.end())
-      fail(entry, "there is no {} {}; {}", entry.key, quote(value), suggestion_text(value, known));
+      fail(entry, "{}: {} is not a possible value; {}", called(entry), quote(value),
+           suggestion_text(value, known));
     return value;
   }
 

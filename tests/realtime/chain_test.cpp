@@ -1117,7 +1117,8 @@ TEST(Build, InvalidFormulaIsRefused) {
             "model file as a variable in [variables]");
   EXPECT_EQ(error_of(with(truth.model(), written(EffectLocation::static_defect, "corrected_mach")),
                      truth.recorded()),
-            "the formula of effect 'of-the-user' needs 'corrected_mach', which is known only after delta-p");
+            "the formula of effect 'of-the-user' needs 'corrected_mach', which is known only after delta-p; "
+            "use 'mach', of the measured pressures");
 }
 
 TEST(Build, TooManyFormulaVariablesAreRefused) {
@@ -1138,7 +1139,8 @@ TEST(Build, TooManyFormulaVariablesAreRefused) {
 TEST(Build, UnknownDomainQuantityIsRefused) {
   Model model = truth.model();
   model.domain = {{"speed", 0, 1}};
-  EXPECT_EQ(error_of(model, truth.recorded()), "there is no quantity 'speed'");
+  EXPECT_EQ(error_of(model, truth.recorded()),
+            "the domain of the model: there is no quantity 'speed'; correct the name");
   model.domain = {{"flaps", 0, 1}};
   EXPECT_EQ(error_of(model, truth.recorded()),
             "the domain of the model needs the role 'flaps', which is not among the recorded quantities; add "

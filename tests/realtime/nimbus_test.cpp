@@ -617,7 +617,7 @@ TEST(NimbusSystem, FailedInstallationKeepsTheInstalledModel) {
   EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "PSFD"}),
             "the input 'PSFD' is neither a role nor a variable of the model's formulas");
   EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "corrected_mach"}),
-            "the input 'corrected_mach' is derived, not recorded");
+            "the input 'corrected_mach' is derived, not recorded; remove it");
   EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "static_pressure"}),
             "two inputs are 'static_pressure'");
   EXPECT_THAT(error_of({}, {"static_pressure"}), testing::HasSubstr("dynamic_pressure"));

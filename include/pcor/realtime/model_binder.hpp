@@ -292,7 +292,8 @@ class ModelBinder {
   bool add_range(const DomainRange& range) {
     const Quantity quantity = quantity_named(range.quantity);
     if (quantity == Quantity::count)
-      return fail(Code::unknown_quantity, "", "there is no quantity " + quote(range.quantity));
+      return fail(Code::unknown_quantity, "the domain of the model:",
+                  "there is no quantity " + quote(range.quantity) + "; correct the name");
     if (!require(quantity, "the domain of the model")) return false;
     bound_.domain_.push_back({quantity, range.lower, range.upper, false});
     if (quantity == Quantity::flaps) describes_flaps_ = true;
@@ -372,7 +373,9 @@ class ModelBinder {
   bool fail_missing(Quantity quantity, const std::string& who) {
     const std::string name = quote(info_of(quantity).name);
     if (!is_role(quantity))
-      return fail(Code::circular_dependency, who, "needs " + name + ", which is known only after delta-p",
+      return fail(Code::circular_dependency, who,
+                  "needs " + name + ", which is known only after delta-p" +
+                      (quantity == Quantity::corrected_mach ? "; use 'mach', of the measured pressures" : ""),
                   quantity);
     return fail(Code::role_missing, who, "needs the role " + name + ", which" + std::string(not_recorded),
                 quantity);

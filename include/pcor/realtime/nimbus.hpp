@@ -159,7 +159,9 @@ class NimbusSystem {
           return fail("the input '" + name + "' is a variable of no formula that acts; remove it");
         quantity = extra_quantity(static_cast<std::size_t>(extra - extras.begin()));
       } else if (!is_role(quantity)) {
-        return fail("the input '" + name + "' is derived, not recorded");
+        return fail("the input '" + name + "' is " +
+                    (quantity == Quantity::time ? "no dependency; give the host a function time()"
+                                                : "derived, not recorded; remove it"));
       }
       bound.push_back({quantity, zero_of(quantity)});
     }
