@@ -64,7 +64,7 @@ inline constexpr std::array<QualityInfo, 21> quality_info{{
     {Quality::temperature_missing, "temperature_missing", "no temperature: no airspeed",
      "no temperature, or outside the plausible range: no airspeed"},
     {Quality::dry_air_assumed, "dry_air_assumed", "no humidity: dry air",
-     "no humidity: constants of dry air"},
+     "no humidity, or a vapour pressure not below the static pressure: constants of dry air"},
     {Quality::humidity_limited, "humidity_limited", "vapour pressure set to zero or to saturation",
      "vapour pressure below zero or above saturation: set to the limit"},
     {Quality::lams_missing, "lams_missing", "no valid airspeed from LAMS",

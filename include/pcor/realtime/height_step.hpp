@@ -7,8 +7,8 @@
 namespace pcor {
 
 /// Step of geopotential height per kelvin (m/K) since the previous sample, from the corrected pressures and
-/// the humidity of both: `hydrostatic_step`. NaN at a start, after a gap, and if either pressure is missing;
-/// see the quality bits of that sample.
+/// the humidity of both: `hydrostatic_step`. NaN at a start, after a gap, and if either pressure is missing:
+/// a bit gives the reason, except at the first sample, and if only the previous pressure is missing.
 class HeightStep final : public Functor {
  public:
   HeightStep()
