@@ -57,7 +57,6 @@ std::string other_causes(const Diagnosis& diagnosis) {
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
-  for (std::string& text : unexplained_text(diagnosis.unexplained)) report.summary.push_back(std::move(text));
   const std::string refit =
       diagnosis.is_refitted
           ? fmt::format(", and {} hPa with {}", hpa(diagnosis.residual_rms), refitted_text(diagnosis))
@@ -71,6 +70,7 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
     report.summary.push_back(
         fmt::format("{} effects were tested; no effect was detected.", diagnosis.candidates));
   }
+  for (std::string& text : unexplained_text(diagnosis.unexplained)) report.summary.push_back(std::move(text));
   std::vector<std::string> limits;
   for (const UpperLimit& limit : diagnosis.limits) {
     if (limits.size() == limits_in_summary) break;

@@ -212,7 +212,8 @@ std::string foot(const Report& report) {
 std::string hash_of(std::string_view script) {
   std::array<unsigned char, 32> digest{};
   if (EVP_Digest(script.data(), script.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1)
-    throw Error(Error::Code::system, "report: libcrypto computed no SHA-256: the memory is exhausted, or OpenSSL is incomplete");
+    throw Error(Error::Code::system,
+                "report: libcrypto computed no SHA-256: the memory is exhausted, or OpenSSL is incomplete");
   return "sha256-" + report::base64(digest.data(), digest.size());
 }
 

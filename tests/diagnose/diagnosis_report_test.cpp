@@ -352,8 +352,8 @@ TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
 TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   const Report report = diagnosis_report(unexplained(), model());
   EXPECT_EQ(report.title, "The residual has structure that is not explained by any effect");
-  EXPECT_THAT(report.summary[0], HasSubstr("0.047 hPa rms, largest in the regime level"));
-  EXPECT_THAT(report.summary[1], HasSubstr("engine torque (ENGTRQ): a curve explains 31 %"));
+  EXPECT_THAT(report.summary, Contains(HasSubstr("0.047 hPa rms, largest in the regime level")));
+  EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ): a curve explains 31 %")));
   const auto& variables = item<ReportTable>(report, "Variables that the unexplained structure varies with");
   EXPECT_THAT(variables.headers, ElementsAre("variable", "R2, curve", "R2, line", "slope of the line",
                                              "hPa per", "p", "formula", "what"));

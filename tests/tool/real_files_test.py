@@ -134,8 +134,10 @@ class Simulated(CaseTest):
         text = self.run_tool("compare", flight, "-m", "two.toml", "--time-stamp", "middle", *by_height).stdout
         # Heights do not determine the level of delta-p.
         self.assertNotIn(" refit ", text.rstrip().splitlines()[-1])
-        for command, more in (("diagnose", by_height), ("check", ()),
-                              ("improve", (*by_height, "-o", "best.toml", "--force"))):
+        improved = self.run_tool("improve", flight, "-m", "two.toml", "--time-stamp", "middle", *by_height, "-o", "best.toml",
+                                 "--force").stdout
+        self.assertNotIn(" process ", improved.rstrip().splitlines()[-1])
+        for command, more in (("diagnose", by_height), ("check", ())):
             with self.subTest(command):
                 text = self.run_tool(command, flight, "-m", "two.toml", "--time-stamp", "middle", *more).stdout
                 words = shlex.split(text.rstrip().splitlines()[-1].rpartition(": ")[2])

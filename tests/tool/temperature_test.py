@@ -255,7 +255,7 @@ class Fit(TemperatureTest):
 
     def test_a_correction_of_many_usual_errors_is_not_advised(self):
         text = self.text_of(flights=(self.simulated(replace("^offset = 0.55$", "offset = 3.0")(SCENARIO)),))
-        self.assertRegex(text, "(?m)^warning.*times the usual error of a thermometer, 0.3 K")
+        self.assertRegex(text, "(?mi)^warning.*times the usual error of a thermometer, 0.3 K")
         self.assertNotIn("To apply it", text)
 
     def test_harmful_correction_is_not_advised(self):

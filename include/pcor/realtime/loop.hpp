@@ -70,11 +70,11 @@ class Loop {
   /// including its filtered temperature (`LowPass`) unless disabled; omit that role to skip the laser. The
   /// rate is at most 10,000 samples per second. Several recorded humidities: the vapour pressure is used,
   /// otherwise the dew point. A recorded ambient temperature is used instead of the recovery temperature.
-  /// A missing value is not replaced by that of another role. The reader of model files refuses such roles. If an
-  /// uncertainty is given, also the uncertainties of the results (`ResultUncertainty`). Returns nullopt if
-  /// the model cannot be used, with the reason in `error`. Variables of formulas that are not quantities of
-  /// the library are further inputs, which the host sets or a functor writes: `extra_names` lists them, also
-  /// a misspelt one, whose missing value makes the effect missing (bit `effect_input_missing`). With
+  /// A missing value is not replaced by that of another role. The reader of model files refuses such roles.
+  /// If an uncertainty is given, also the uncertainties of the results (`ResultUncertainty`). Returns nullopt
+  /// if the model cannot be used, with the reason in `error`. Variables of formulas that are not quantities
+  /// of the library are further inputs, which the host sets or a functor writes: `extra_names` lists them,
+  /// also a misspelt one, whose missing value makes the effect missing (bit `effect_input_missing`). With
   /// `CorrectWith::lams` a laser without lock is replaced by the model (`CorrectedPressures`).
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model,
