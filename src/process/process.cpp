@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,23 +20,21 @@
 #include <pcor/realtime/height_step.hpp>
 #include <pcor/realtime/loop.hpp>
 #include <pcor/regimes/regimes.hpp>
-#include "base/phrasing.hpp"
 #include "flight/flight_file.hpp"
 #include "model_io/archived_model.hpp"
 #include "model_io/output_table.hpp"
-#include "model_io/sensor_doubt.hpp"
 #include "numerics/missing.hpp"
 #include "process/copied_variables.hpp"
 #include "process/delay_line.hpp"
+#include "process/frozen_inputs.hpp"
 #include "process/origin.hpp"
-#include "residuals/masks.hpp"
-#include "residuals/samples.hpp"
-#include "residuals/time_spans.hpp"
+#include "process/output_uncertainty.hpp"
+#include "process/outside_law.hpp"
+#include "process/sample_statistics.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/find_frozen.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
-#include "roles/resolution.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -49,22 +46,6 @@ double flying_dynamic_pressure(const std::string& aircraft) {
   return dynamic_pressure_from_airspeed(standard_pressure(0.0), speed, standard_temperature(0.0),
                                         dry_air<double>());
 }
-
-/// Bits of samples that have no delta-p.
-constexpr auto prevent_delta_p = {Quality::static_pressure_missing,
-                                  Quality::dynamic_pressure_missing,
-                                  Quality::impossible_static_pressure,
-                                  Quality::impossible_dynamic_pressure,
-                                  Quality::effect_input_missing,
-                                  Quality::defect_exceeds_dynamic_pressure,
-                                  Quality::no_airflow};
-
-/// A variable of the file that the loop reads.
-struct Input : ModelInput {
-  std::vector<double> values{};  // values of one block
-  RejectedCounts excluded{};     // total of all inputs
-  std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
-};
 
 /// One flight on its way through the loop.
 class Processing {
@@ -81,8 +62,6 @@ class Processing {
     summary_.gaps = flight_.time().gap_count;
     summary_.first_time = flight_.time().first;
     summary_.last_time = flight_.time().last;
-    summary_.min_defect = infinity;
-    summary_.max_defect = -infinity;
 
     choose_roles();
     for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
@@ -90,11 +69,14 @@ class Processing {
     note_archive();
     for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes))
       inputs_.push_back({std::move(input)});
-    for (const Input& input : inputs_) names_.emplace(input.quantity, input.variable);
+    for (const LoopInput& input : inputs_) names_.emplace(input.quantity, input.variable);
     find_frozen_sensors();
-    find_flaps();
+    flaps_ = find_extended_flaps(flight_, file_, options_, summary_);
     choose_rate();
-    note_uncertainty();
+    uncertainty_->note_unstated(file_, summary_.notes);
+    statistics_.emplace(*chain_,
+                        options_.correct_with == CorrectWith::model && uncertainty_->states_defect_error(),
+                        summary_);
     const FileDescription description = describe();
     FlightWriter writer(output, flight_, description);
     copy_variables(writer, description);
@@ -108,18 +90,12 @@ class Processing {
         (*line)->write(writer, static_cast<std::size_t>(summary_.rate));
       if (options_.progress) options_.progress(block.first + block.count, flight_.records());
     }
-    summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
-    note_uncorrected();
+    refuse_uncorrected();
     writer.finish();
-    if (summary_.in_flight > 0) {
-      summary_.mean_defect /= static_cast<double>(summary_.in_flight);
-      note_defect_uncertainty();
-    } else {
-      summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
-    }
-    for (const Input& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
-    note_impossible_temperature();
-    note_domain();
+    statistics_->finish();
+    for (const LoopInput& input : inputs_) note_excluded(input, input.excluded, summary_.notes);
+    statistics_->note_impossible_temperature(file_);
+    note_outside_domain(flight_, statistics_->outside_domain(), flaps_, summary_);
     return summary_;
   }
 
@@ -158,40 +134,16 @@ class Processing {
 
   void choose_chain() { chain_ = std::make_shared<const Chain>(chain_of(file_.model, roles_)); }
 
-  /// Detects sensors that are constant in flight for much longer than their noise permits.
+  /// Marks frozen sensors, and notes a flight that did not fly.
   void find_frozen_sensors() {
-    const auto read = [this](const Input& input) {
-      return read_values(flight_, input.variable, input.conversion).values;
-    };
     std::vector<bool> flying;
-    for (const Input& input : inputs_) {
+    for (const LoopInput& input : inputs_) {
       if (input.quantity != Quantity::dynamic_pressure) continue;
-      const std::vector<double> values = read(input);
+      const std::vector<double> values = read_values(flight_, input.variable, input.conversion).values;
       flying = in_flight(values, summary_.flying_dynamic_pressure);
       note_no_flight(input.variable, values);
     }
-    std::vector<double> time;
-    for (Input& input : inputs_) {
-      const std::vector<double> values = read(input);
-      note_coarse(input.quantity, input.variable, values, summary_.notes);
-      const std::vector<Segment> frozen =
-          find_frozen(flight_, input.variable, input.quantity, values, flying);
-      if (frozen.empty()) continue;
-      if (time.empty()) time = record_times(flight_);
-      frozen_texts_.push_back(frozen_text(input.variable, input.quantity, values, time, frozen));
-      summary_.notes.push_back(warning_note(frozen_texts_.back()));
-      input.frozen.resize(values.size());
-      frozen_.resize(values.size());
-      for (const Segment& span : frozen) {
-        for (std::size_t i = span.first; i < span.first + span.count; ++i)
-          input.frozen[i] = frozen_[i] = true;
-      }
-    }
-    if (!frozen_.empty()) {
-      note(options_.keep_frozen
-               ? "readings of frozen sensors are corrected, too; PCORFLAG marks them"
-               : "readings of frozen sensors are treated as missing; --keep-frozen uses them");
-    }
+    frozen_ = find_frozen_inputs(flight_, flying, options_.keep_frozen, inputs_, summary_.notes);
   }
 
   void note_no_flight(const std::string& variable, const std::vector<double>& dynamic_pressure) {
@@ -207,115 +159,20 @@ class Processing {
         variable, maximum, summary_.flying_dynamic_pressure)));
   }
 
-  /// Marks records with extended flaps unless an effect describes them: laws are usually fitted with flaps
-  /// retracted.
-  void find_flaps() {
-    if (changes_no_pressure(file_, options_)) return;
-    std::optional<std::vector<bool>> extended;
-    std::string variable;
-    try {
-      variable = read_role(flight_, file_, Quantity::flaps).variable;
-      const std::vector<ModelEffect>& effects = file_.model.effects;
-      if (std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
-            return !is_neutral(effect) && reads_flaps(effect, variable);
-          }))
-        return;
-      extended = flaps_extended(flight_, file_);
-    } catch (const Error& error) {  // a variable that no result needs is damaged
-      summary_.notes.push_back(
-          warning_note(fmt::format("records with extended flaps have no quality bit: {}", error.what())));
-      return;
-    }
-    if (!extended) {
-      note(
-          "records with extended flaps have no quality bit: flaps are not recorded and the lift does not "
-          "determine them");
-    } else if (std::find(extended->begin(), extended->end(), true) != extended->end()) {
-      flaps_ = std::move(*extended);
-      const std::string times = add_outside("flaps extended", flaps_);
-      summary_.notes.push_back(warning_note(fmt::format(
-          "do not use {}{} of {} records (bit outside_domain): flaps extended, not in the model; {}{}; these "
-          "records have no uncertainty",
-          options_.correct_with == CorrectWith::lams ? to_string("PCOR") + " or results by the model in "
-                                                     : "",
-          std::count(flaps_.begin(), flaps_.end(), true), flaps_.size(), times,
-          variable.empty() ? ", inferred from the lift" : "")));
-    }
-  }
-
-  /// Adds the spans of the marked records to the summary, and returns their times as text.
-  std::string add_outside(const std::string& reason, const std::vector<bool>& records,
-                          std::size_t max_gap = 0) {
-    const std::vector<double> time = record_times(flight_);
-    const std::vector<Segment> segments = marked_segments(records, max_gap);
-    for (const Segment& segment : segments) {
-      const double last = time[segment.first + segment.count - 1];
-      summary_.outside.push_back({reason, time[segment.first], last + flight_.time().step});
-    }
-    return times_of(segments, time);
-  }
-
-  /// Warns of fewer than 1 % corrected samples, with the most frequent reason. @throws Error if a
-  /// flight that flew has no corrected sample; the output is then not written
-  void note_uncorrected() {
-    constexpr std::size_t few = 100;
-    if (few * summary_.corrected >= summary_.samples) return;
-    std::string text =
-        fmt::format("{} of {} samples could be corrected", summary_.corrected, summary_.samples);
-    std::size_t most = 0;
-    for (std::size_t i = 0; i < quality_info.size(); ++i) {
-      const bool prevents = std::find(prevent_delta_p.begin(), prevent_delta_p.end(), quality_info[i].bit) !=
-                            prevent_delta_p.end();
-      if (prevents && summary_.flagged[i] > summary_.flagged[most]) most = i;
-    }
-    // The reason of a missing flow angle is more specific.
-    for (std::size_t i = 0; i < quality_info.size(); ++i) {
-      if (quality_info[i].bit == Quality::impossible_radome_pressure &&
-          quality_info[most].bit == Quality::effect_input_missing &&
-          10 * summary_.flagged[i] > 9 * summary_.flagged[most])
-        most = i;
-    }
-    if (const std::size_t count = summary_.flagged[most]; count > 0) {
-      text += fmt::format("; most frequent reason: {}, {} ({} sample{})", quality_info[most].name,
-                          quality_info[most].brief, count, count == 1 ? "" : "s");
-    }
+  /// Warns of fewer than 1 % corrected samples. @throws Error if a flight that flew has no corrected sample;
+  /// the output is then not written
+  void refuse_uncorrected() {
+    const std::string text = statistics_->uncorrected_text();
+    if (text.empty()) return;
     if (summary_.corrected > 0 || did_not_fly_) {
       summary_.notes.push_back(warning_note(text));
     } else {
       flight_.file().refuse(
           Error::Code::samples, ": {}; {}", text,
-          frozen_texts_.empty()
+          frozen_.texts.empty()
               ? "compare the [variables] and [units] of the model with the roles that 'pcor inspect' finds"
-              : fmt::format("{}; --keep-frozen uses these readings", fmt::join(frozen_texts_, "; ")));
+              : fmt::format("{}; --keep-frozen uses these readings", fmt::join(frozen_.texts, "; ")));
     }
-  }
-
-  /// Warns of a thermometer whose values give no possible temperature in most samples, as in a wrong unit.
-  void note_impossible_temperature() {
-    if (2 * impossible_temperatures_ <= summary_.corrected) return;
-    const Quantity role = chain_->recorded(Quantity::recovery_temperature) ? Quantity::recovery_temperature
-                                                                           : Quantity::ambient_temperature;
-    summary_.notes.push_back(warning_note(
-        fmt::format("set the unit of {} in [units] of the model, or name another variable: {} of {} "
-                    "corrected samples have "
-                    "no possible temperature; {} is {:.0f} K in these samples on average",
-                    info_of(role).name, impossible_temperatures_, summary_.corrected, file_.variable_of(role),
-                    sum_of_impossible_ / static_cast<double>(impossible_temperatures_))));
-  }
-
-  /// Notes the samples in flight outside the domain of the law, known after the run.
-  void note_domain() {
-    for (std::size_t i = 0; i < std::min(flaps_.size(), outside_.size()); ++i)
-      outside_[i] = outside_[i] && !flaps_[i];
-    const auto count = std::count(outside_.begin(), outside_.end(), true);
-    if (count == 0) return;
-    // Values that cross a limit many times in a minute give one span.
-    const auto records_per_minute = static_cast<std::size_t>(60.0 / flight_.time().step);
-    note(
-        "delta-p is extrapolated in {}{} of {} records (bit outside_domain), in flight outside the domain of "
-        "the law; these records have no uncertainty: {}",
-        flaps_.empty() ? "" : "another ", count, outside_.size(),
-        add_outside("outside the domain", outside_, records_per_minute));
   }
 
   void choose_rate() {
@@ -324,9 +181,10 @@ class Processing {
     }
     std::string why;
     const double rate = summary_.rate / flight_.time().step;
-    uncertainty_ = uncertainty();
+    summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
+    uncertainty_.emplace(file_, chain_, options_);
     const ShortestPeriods periods = choose_periods();
-    loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_, periods);
+    loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_->stated(), periods);
     if (!loop_) fail_model(why);
     loop_->do_not_watch_sensors();  // this host knows their whole series
     results_.emplace(loop_->delay());
@@ -345,7 +203,7 @@ class Processing {
       if (!chain_->derives(rate)) continue;
       if (time.empty()) time = record_times(flight_);
       const auto input = std::find_if(inputs_.begin(), inputs_.end(),
-                                      [of = quantity](const Input& each) { return each.quantity == of; });
+                                      [of = quantity](const LoopInput& each) { return each.quantity == of; });
       const FastSeries series = read_fast(flight_, *input, flight_.variable(input->variable).rate);
       const SignalBand band = signal_band_of(series, time, flight_.time().step);
       periods.emplace_back(rate, std::max(RateFilter::usual_period, band.min_period));
@@ -373,91 +231,6 @@ class Processing {
       time = info.parameters[0].neutral;
     }
     choose_chain();
-  }
-
-  /// Stated uncertainty of the model, according to the options; missing parts are noted. @throws Error if a
-  /// requested part is not stated.
-  ModelUncertainty uncertainty() {
-    const UncertaintyPart part = options_.uncertainty;
-    if (part == UncertaintyPart::none) return {};
-    ModelUncertainty stated = uncertainty_of(file_);
-    if (part == UncertaintyPart::systematic) {
-      stated = stated_uncertainty(file_).has_systematic() ? stated.systematic_part() : ModelUncertainty{};
-    }
-    if (part == UncertaintyPart::random) stated = stated.random_part();
-    if (stated.has_systematic() || stated.has_random()) return stated;
-    if (part == UncertaintyPart::total_if_stated) return {};
-    const char* const what = part == UncertaintyPart::systematic
-                                 ? "no standard error or covariance of a parameter"
-                             : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
-                                                               : "no noise, misfit, stderr or covariance";
-    fail_model(
-        fmt::format("it states {} (the calibration of a sensor alone does not suffice); run 'pcor refit' for "
-                    "the covariance, set the noise of the sensors in [uncertainty], or omit --uncertainty",
-                    what));
-  }
-
-  /// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
-  bool states(std::initializer_list<EffectLocation> locations, std::initializer_list<Quantity> roles) const {
-    std::size_t count = chain_->parameters().size();
-    for (const ModelEffect& each : uncertainty_.calibration) count += each.parameters.size();
-    for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
-         ++effect) {
-      if (std::find(locations.begin(), locations.end(), chain_->location_of(effect)) == locations.end())
-        continue;
-      const std::size_t first = chain_->first_parameter_of(effect);
-      for (std::size_t i = first; i < first + chain_->parameter_count_of(effect); ++i) {
-        if (uncertainty_.covariance[i * count + i] > 0.0) return true;
-      }
-    }
-    return std::any_of(roles.begin(), roles.end(),
-                       [this](Quantity role) { return uncertainty_.random[index(role)] > 0.0; });
-  }
-
-  /// Warns if delta-p is less certain than the errors that a correction removes.
-  void note_defect_uncertainty() {
-    if (uncertain_samples_ == 0) return;
-    constexpr double max_uncertainty = 1.0;  // hPa, as in a fit by GPS
-    summary_.defect_uncertainty = sum_of_uncertainties_ / static_cast<double>(uncertain_samples_);
-    if (summary_.defect_uncertainty < max_uncertainty) return;
-    summary_.notes.push_back(
-        warning_note(fmt::format("delta-p is not determined: its standard uncertainty is {:.2f} hPa on "
-                                 "average; refit the model with a "
-                                 "laser, a second static system, or GPS wind in circles or reverse headings",
-                                 summary_.defect_uncertainty)));
-  }
-
-  void note_uncertainty() {
-    if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
-    if (options_.correct_with == CorrectWith::lams) {
-      note("LAMS-corrected samples have an uncertainty of PCOR only: the model covariance does not apply");
-    }
-    using Q = Quantity;
-    if (!states_defect_error())
-      note(
-          "refit the model or set static_defect in [uncertainty]: pressures have no uncertainty, the others "
-          "exclude the error of delta-p");
-    Names unstated;
-    const auto require = [&](std::initializer_list<EffectLocation> locations, Quantity role) {
-      if (!states(locations, {role})) unstated.emplace_back(info_of(role).name);
-    };
-    require({EffectLocation::static_transducer, EffectLocation::static_line}, Q::static_pressure);
-    require({EffectLocation::dynamic_transducer, EffectLocation::static_line, EffectLocation::total_line,
-             EffectLocation::pitot},
-            Q::dynamic_pressure);
-    // The systematic error of a thermometer has a usual size.
-    if (chain_->has_temperature() && options_.uncertainty != UncertaintyPart::systematic)
-      require({}, file_.variables.count(Q::recovery_temperature) > 0 ? Q::recovery_temperature
-                                                                     : Q::ambient_temperature);
-    if (!unstated.empty())
-      note("set {} in [uncertainty]: the uncertainties exclude errors of these sensors", join_list(unstated));
-    for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
-      if (uncertainty_.calibration.empty()) break;
-      const std::vector<std::string>& known = file_.covariance.parameters;
-      if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
-      note("set \"{}\" in [uncertainty] of the model: the uncertainties assume 0 +- {:g}, the usual size",
-           doubt.name(), doubt.size);
-    }
   }
 
   /// Notes that the archive corrected the pressures, or that the model changes no pressure.
@@ -499,7 +272,7 @@ class Processing {
 
   void copy_variables(FlightWriter& writer, const FileDescription& description) {
     Names names{description.latitude, description.longitude, description.altitude};
-    for (const Input& input : inputs_) names.push_back(input.variable);
+    for (const LoopInput& input : inputs_) names.push_back(input.variable);
     if (options_.hydrostatic) {
       for (const std::string& name : flown_variables(flight_, file_)) names.push_back(name);
     }
@@ -547,7 +320,7 @@ class Processing {
         variable.dependencies = {names_.at(row.uncertainty_of)};
         variable.attributes = {{"coverage_factor", "1"},
                                {"coverage_content_type", "qualityInformation"},
-                               {"comment", uncertainty_comment()}};
+                               {"comment", uncertainty_->comment()}};
       }
       if (row.quantity == Quantity::height_step) {
         variable.attributes = {{"temperature_calibration", temperature_calibration()},
@@ -568,23 +341,7 @@ class Processing {
     if (!loop_->writes(row.quantity)) return false;
     if (row.uncertainty_of == Quantity::count) return true;
     const bool is_pressure = info_of(row.uncertainty_of).unit == "hPa";
-    return loop_->writes(row.uncertainty_of) && (!is_pressure || states_defect_error());
-  }
-
-  /// Whether an error of delta-p is stated, or uncertainties without it were requested.
-  bool states_defect_error() const {
-    return options_.uncertainty == UncertaintyPart::random || uncertainty_.static_defect > 0.0 ||
-           uncertainty_.static_defect_ratio > 0.0 || states({EffectLocation::static_defect}, {});
-  }
-
-  std::string uncertainty_comment() const {
-    const bool systematic = uncertainty_.has_systematic();
-    const bool random = uncertainty_.has_random();
-    return fmt::format("one standard deviation: {}",
-                       systematic && random ? "the systematic part, which is the same error in neighbouring "
-                                              "samples, and the random part, which is not"
-                       : systematic ? "the systematic part alone, the same error in neighbouring samples"
-                                    : "the random part alone, of a single sample");
+    return loop_->writes(row.uncertainty_of) && (!is_pressure || uncertainty_->states_defect_error());
   }
 
   void define_flags(FlightWriter& writer) {
@@ -627,72 +384,30 @@ class Processing {
     return fmt::format("{}", fmt::join(coefficients, " "));
   }
 
-  void note_sample() {
-    const State<double>& state = loop_->state();
-    const double defect = state[Quantity::corrected_static_pressure] - state[Quantity::port_static_pressure];
-    if (!is_missing(defect) && !is_missing(state[Quantity::corrected_dynamic_pressure])) {
-      ++summary_.corrected;
-      if (state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
-        ++summary_.in_flight;
-        summary_.mean_defect += defect;  // the sum, until the end
-        summary_.min_defect = std::min(summary_.min_defect, defect);
-        summary_.max_defect = std::max(summary_.max_defect, defect);
-        const double uncertainty = state[Quantity::static_defect_uncertainty];
-        if (options_.correct_with == CorrectWith::model && states_defect_error() &&
-            !is_missing(uncertainty)) {
-          ++uncertain_samples_;
-          sum_of_uncertainties_ += uncertainty;
-        }
-      }
-    }
-    QualityFlags quality = loop_->quality();
-    const double thermometer =
-        state[chain_->recorded(Quantity::recovery_temperature) ? Quantity::recovery_temperature
-                                                               : Quantity::ambient_temperature];
-    if (!is_missing(defect) && !is_missing(thermometer) && quality.has(Quality::temperature_missing)) {
-      ++impossible_temperatures_;
-      sum_of_impossible_ += thermometer;
-    }
-    const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
-    if (chain_->is_outside_domain(state) &&
-        state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
-      outside_.resize(flight_.records());
-      outside_[record] = true;
-    }
-    quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
-    quality.set(!flaps_.empty() && flaps_[record], Quality::outside_domain);
-    double bits = 0.0;
-    if (quality.bits() != 0) {
-      for (std::size_t i = 0; i < quality_info.size(); ++i) {
-        const Quality bit = quality_info[i].bit;
-        // Bit of an earlier sample.
-        if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;
-        ++summary_.flagged[i];
-        bits += static_cast<double>(bit);
-      }
-    }
-    filtered_->enter_flags(bits);
-  }
-
   /// Takes the results of the last run, which may belong to an earlier sample.
   void take_results() {
-    const std::size_t record = noted_ / static_cast<std::size_t>(summary_.rate);
-    if (record < flaps_.size() && flaps_[record]) {  // the stated uncertainty does not apply
+    const std::size_t record = statistics_->record_of_next();
+    const bool has_flaps = record < flaps_.size() && flaps_[record];
+    if (has_flaps) {  // the stated uncertainty does not apply
       for (const UncertainResult& each : uncertain_results)
         loop_->state()[each.uncertainty] = missing<double>();
     }
-    if (results_->leave(*loop_)) note_sample();
+    if (results_->leave(*loop_)) {
+      QualityFlags quality = loop_->quality();
+      quality.set(frozen_.has(record), Quality::sensor_frozen);
+      quality.set(has_flaps, Quality::outside_domain);
+      filtered_->enter_flags(statistics_->add(loop_->state(), quality));
+    }
     if (!filtered_->leave(*loop_) || !loop_->quality().has(Quality::filter_window_incomplete)) return;
     filtered_->add_flag(static_cast<double>(Quality::filter_window_incomplete));
-    for (std::size_t i = 0; i < quality_info.size(); ++i)
-      summary_.flagged[i] += quality_info[i].bit == Quality::filter_window_incomplete ? 1 : 0;
+    statistics_->count(Quality::filter_window_incomplete);
   }
 
   /// Before a gap and at the end: runs the loop with missing values until its last sample has left it.
   void flush() {
     const double last = loop_->last_time();
     for (std::size_t i = 1; filtered_->inside() > 0; ++i) {
-      for (const Input& input : inputs_) loop_->state()[input.quantity] = missing<double>();
+      for (const LoopInput& input : inputs_) loop_->state()[input.quantity] = missing<double>();
       loop_->run(last + static_cast<double>(i) * sample_step_);
       take_results();
     }
@@ -703,7 +418,7 @@ class Processing {
 
   void process_block(RecordBlock block) {
     const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
-    for (Input& input : inputs_) {
+    for (LoopInput& input : inputs_) {
       input.values.resize(samples);
       input.excluded +=
           flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
@@ -715,7 +430,7 @@ class Processing {
       if (loop_->starts_anew(time)) flush();
       State<double>& state = loop_->state();
       const std::size_t record = block.first + i / static_cast<std::size_t>(summary_.rate);
-      for (const Input& input : inputs_) {
+      for (const LoopInput& input : inputs_) {
         const bool is_left_out = !options_.keep_frozen && !input.frozen.empty() && input.frozen[record];
         state[input.quantity] = is_left_out ? missing<double>() : input.values[i];
       }
@@ -733,22 +448,16 @@ class Processing {
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
   std::optional<Loop> loop_;
-  ModelUncertainty uncertainty_;  // uncertainty of the model and its inputs
-  std::vector<Input> inputs_;
+  std::optional<OutputUncertainty> uncertainty_;
+  std::optional<SampleStatistics> statistics_;
+  std::vector<LoopInput> inputs_;
   std::optional<DelayLine> results_;
-  std::optional<DelayLine> filtered_;      // later still; and the quality bits, one of which is the filter's
-  double sample_step_ = 1.0;               // s
-  std::vector<std::string> frozen_texts_;  // one for each frozen sensor
-  std::size_t impossible_temperatures_ = 0;  // corrected samples whose thermometer gives no temperature
-  double sum_of_impossible_ = 0.0;           // of the thermometer in these samples, K
-  std::vector<bool> frozen_;                 // records in which any sensor is frozen; empty: none
-  std::vector<bool> flaps_;                  // records outside the law by extended flaps; empty: none
-  std::vector<bool> outside_;                // records in flight outside the domain of the law; empty: none
-  std::size_t uncertain_samples_ = 0;        // samples in flight with an uncertainty of delta-p
-  double sum_of_uncertainties_ = 0.0;        // sum of the uncertainties of delta-p, hPa
-  bool did_not_fly_ = false;                 // the dynamic pressure stays below that of flight
-  std::size_t noted_ = 0;                    // samples of which results are available
-  std::map<Quantity, std::string> names_;    // names of inputs and results in the output
+  std::optional<DelayLine> filtered_;  // later still; and the quality bits, one of which is the filter's
+  double sample_step_ = 1.0;           // s
+  FrozenInputs frozen_;
+  std::vector<bool> flaps_;                // records outside the law by extended flaps; empty: none
+  bool did_not_fly_ = false;               // the dynamic pressure stays below that of flight
+  std::map<Quantity, std::string> names_;  // names of inputs and results in the output
   ProcessSummary summary_;
 };
 
