@@ -15,6 +15,7 @@
 #include "diagnose/findings.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
+#include "improve/rival_choice.hpp"
 #include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
@@ -31,54 +32,6 @@ constexpr double much_worse_on_parts = 1.25;
 constexpr double worse_on_parts = 1.05;
 // Tolerance relative to the noise: smaller differences of the static pressure do not matter.
 constexpr double negligible = 0.05;
-
-/// Effect that the loop may add, and the required result.
-struct OfferedEffect {
-  std::vector<AddedEffect> choices{};  ///< the effect, and rivals that the flights cannot separate from it
-  ImproveStep step{};
-  bool is_named = true;  ///< the effect or one of its rivals counts as the cause
-  bool is_sure = false;  ///< significant on blocks of the fitted flights that were excluded from its estimate
-  double impossible_size = 0.0;  ///< size in usual sizes, if it is impossible; 0 otherwise
-  std::string caution;           ///< end of the sentence in the summary
-};
-
-OfferedEffect candidate_of(const Finding& finding, const Diagnosis& diagnosis) {
-  OfferedEffect candidate;
-  candidate.choices.push_back({finding.effect, finding.held, finding.is_alike, finding.probability});
-  candidate.step.title = finding.title;
-  candidate.is_sure = finding.gain > sure_gain * finding.gain_error;
-  if (is_of_impossible_size(finding)) candidate.impossible_size = finding.times_usual;
-  std::vector<std::string>& aliases = candidate.step.aliases;
-  for (const Alias& alias : finding.aliases) {
-    aliases.push_back(alias.effect);
-    if (alias.probability >= min_probability)
-      candidate.choices.push_back({alias.correction, alias.held, alias.is_alike, alias.probability});
-  }
-  if (diagnosis.verdict == Verdict::partial) {
-    candidate.is_named = false;
-    candidate.caution = "; significant structure remains, so this effect may not be the cause";
-  } else if (!aliases.empty()) {
-    candidate.caution =
-        fmt::format("; these flights cannot distinguish the effect from {}{}{}", fmt::join(aliases, ", "),
-                    finding.advice.sentence.empty() ? "" : ": ", finding.advice.sentence);
-  }
-  if (!diagnosis.rival.empty())
-    candidate.caution += fmt::format("; a straight line in {} may be the cause instead", diagnosis.rival);
-  if (!finding.rival.empty())
-    candidate.caution += fmt::format("; {} may be the cause instead", finding.rival);
-  return candidate;
-}
-
-OfferedEffect candidate_of(const EmpiricalPredictor& variable, const std::string& flights) {
-  OfferedEffect candidate;
-  candidate.choices.push_back({effect_of(variable, flights)});
-  candidate.step.title = fmt::format("structure that varies with {}{}", variable.name,
-                                     variable.description.empty() ? "" : ", " + variable.description);
-  candidate.is_named = false;
-  candidate.is_sure = true;  // only significant variables are traced
-  candidate.caution = "; no effect of the catalogue explains this structure: its cause is unknown";
-  return candidate;
-}
 
 /// rms of the held-out samples, hPa; NaN if there are no such samples
 double held_out_rms(const RefitResult& fit) {
@@ -116,13 +69,6 @@ bool is_significant(const RefitResult& fit, const ModelEffect& effect) {
     return parameter.fitted && parameter.name.rfind(effect.id + ".", 0) == 0 &&
            std::abs(parameter.value - neutral) > 3.0 * parameter.standard_error;
   });
-}
-
-/// Rms of a - b over the samples in which both have a value.
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
-  SquareSum sum;
-  for (std::size_t i = 0; i < a.size(); ++i) sum.add(a[i] - b[i]);
-  return sum.rms();
 }
 
 /// Whether a surface of the attack may describe what the model lacks: structure without a named cause, or an
@@ -434,11 +380,11 @@ class ForwardSelection {
     if (now.verdict == Verdict::silent) return candidates;
     for (const Finding& finding : now.findings) {
       if (!finding.may_be_of_reference() && !has_effect(result_.fit.model, finding.effect.id))
-        candidates.push_back(candidate_of(finding, now));
+        candidates.push_back(offered_effect(finding, now));
     }
     if (names_causes() || !loop_.trace_variables) return candidates;
     if (const EmpiricalPredictor* const variable = predictor_with_formula(now.unexplained))
-      candidates.push_back(candidate_of(*variable, loop_.flights));
+      candidates.push_back(offered_effect(*variable, loop_.flights));
     return candidates;
   }
 
@@ -606,30 +552,6 @@ class ForwardSelection {
 };
 
 }  // namespace
-
-RivalChoice choose_rival(const std::vector<std::vector<double>>& changes, const std::vector<double>& weights,
-                         double tolerance) {
-  const std::vector<double> none(changes.front().size(), 0.0);
-  const auto expected_error = [&](const std::vector<double>& change) {
-    double squares = 0.0;
-    for (std::size_t k = 0; k < changes.size(); ++k)
-      squares += weights[k] * std::pow(distance(change, changes[k]), 2);
-    return std::sqrt(squares);
-  };
-  const auto is_harmless = [&](const std::vector<double>& change) {
-    return std::none_of(changes.begin(), changes.end(), [&](const std::vector<double>& rival) {
-      return distance(change, rival) > distance(none, rival) + tolerance;
-    });
-  };
-  const double error_of_first = expected_error(changes.front());
-  if (error_of_first <= tolerance) return {0, error_of_first, error_of_first};
-  RivalChoice best{std::nullopt, expected_error(none), error_of_first};
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    const double error = expected_error(changes[k]);
-    if (error < best.error && is_harmless(changes[k])) best = {k, error, error_of_first};
-  }
-  return best;
-}
 
 Improvement ImproveLoop::run(const ModelDefinition& model) const {
   return ForwardSelection(*this, model).run();

@@ -14,6 +14,7 @@
 
 #include "diagnose/rms.hpp"
 #include "improve/improve_loop.hpp"
+#include "improve/rival_choice.hpp"
 #include "numerics/missing.hpp"
 #include "support/synthetic_samples.hpp"
 
