@@ -16,13 +16,13 @@ namespace pcor::internal {
 namespace detail {
 
 /// c[0] + c[1] x + c[2] x^2 + ..., the even and the odd powers at the same time.
-template <class Register, std::size_t Count>
-Register polynomial(const Register& x, const std::array<double, Count>& c) {
-  static_assert(Count % 2 == 0);
+template <class Register, std::size_t count>
+Register polynomial(const Register& x, const std::array<double, count>& c) {
+  static_assert(count % 2 == 0);
   const Register square = x * x;
-  Register even(c[Count - 2]);
-  Register odd(c[Count - 1]);
-  for (std::size_t i = Count - 2; i >= 2; i -= 2) {
+  Register even(c[count - 2]);
+  Register odd(c[count - 1]);
+  for (std::size_t i = count - 2; i >= 2; i -= 2) {
     even = xsimd::fma(even, square, Register(c[i - 2]));
     odd = xsimd::fma(odd, square, Register(c[i - 1]));
   }

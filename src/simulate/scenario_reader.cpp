@@ -229,8 +229,8 @@ class Reader final : TomlReader {
     }
   }
 
-  template <class Object, std::size_t Count>
-  Actions numbers(Object& object, const std::array<NumberKey<Object>, Count>& keys) const {
+  template <class Object, std::size_t count>
+  Actions numbers(Object& object, const std::array<NumberKey<Object>, count>& keys) const {
     Actions actions;
     for (const NumberKey<Object>& key : keys) {
       actions.emplace_back(std::string(key.key), [this, &object, key](const Entry& entry) {

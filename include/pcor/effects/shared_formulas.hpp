@@ -24,20 +24,20 @@ struct MinusConstant {
 };
 
 /// k0 times the product of quantities
-template <Quantity... Factors>
+template <Quantity... factors>
 struct Proportional {
   template <class State, class P>
   static auto value(const State& state, const P* parameter) {
-    return parameter[0] * (... * state[Factors]);
+    return parameter[0] * (... * state[factors]);
   }
 };
 
 /// -k0 times a quantity
-template <Quantity Factor>
+template <Quantity factor>
 struct MinusProportional {
   template <class State, class P>
   static auto value(const State& state, const P* parameter) {
-    return -(parameter[0] * state[Factor]);
+    return -(parameter[0] * state[factor]);
   }
 };
 

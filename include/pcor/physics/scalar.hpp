@@ -113,10 +113,10 @@ inline constexpr std::array<double, 8> exponential_less_one{1.0,
                                                             0.00019799005809029933,
                                                             2.6515439600063568e-05};
 
-template <std::size_t... Pair>
-constexpr double polynomial(double x, const std::array<double, 2 * sizeof...(Pair)>& c,
-                            std::index_sequence<Pair...>) {
-  const std::array<double, sizeof...(Pair)> pairs{(c[2 * Pair] + x * c[2 * Pair + 1])...};
+template <std::size_t... pair>
+constexpr double polynomial(double x, const std::array<double, 2 * sizeof...(pair)>& c,
+                            std::index_sequence<pair...>) {
+  const std::array<double, sizeof...(pair)> pairs{(c[2 * pair] + x * c[2 * pair + 1])...};
   if constexpr (pairs.size() == 1) {
     return pairs[0];
   } else {
