@@ -138,6 +138,10 @@ ModelEffect neutral_effect(std::string_view id) {
   return effect;
 }
 
+bool is_neutral(const ModelEffect& effect) {
+  return !effect.is_formula() && effect.parameters == neutral_effect(effect.id).parameters;
+}
+
 ModelEffect surface_effect(const std::string& id, const std::array<SurfaceAxis, 2>& axes) {
   ModelEffect effect;
   effect.id = id;

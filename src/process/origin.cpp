@@ -90,10 +90,6 @@ std::string options_text(const ProcessOptions& options) {
 
 }  // namespace
 
-bool is_neutral(const ModelEffect& effect) {
-  return !effect.is_formula() && effect.parameters == neutral_effect(effect.id).parameters;
-}
-
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   return options.correct_with == CorrectWith::model &&

@@ -10,9 +10,6 @@
 
 namespace pcor::internal {
 
-/// Whether an effect of the catalogue changes nothing: its coefficients are neutral.
-bool is_neutral(const ModelEffect& effect);
-
 /// Whether a model changes no pressure: all its coefficients are neutral.
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options);
 

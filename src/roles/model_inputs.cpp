@@ -72,16 +72,11 @@ void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& note
                         name, variable.long_name.empty() ? "air_temperature" : variable.long_name));
 }
 
-/// Whether the first of the models of a fit was one without law, so that the fit is to these variables.
-bool began_without_law(const ModelDefinition& file) {
-  std::string source = file.law.source;
-  if (const auto* const before = find_entry<ProvenanceList>(file.provenance, "before");
-      before != nullptr && !before->empty()) {
-    const auto* const first = std::get_if<Provenance>(&before->front());
-    const auto* const text = first == nullptr ? nullptr : find_entry<std::string>(*first, "source");
-    if (text != nullptr) source = *text;
-  }
-  return source == source_without_law;
+/// Whether the model has a law that was not fitted to its variables.
+bool has_foreign_law(const ModelDefinition& file) {
+  const std::vector<ModelEffect>& effects = file.model.effects;
+  return find_entry<ProvenanceList>(file.provenance, "flights") == nullptr &&
+         !std::all_of(effects.begin(), effects.end(), is_neutral);
 }
 
 /// Warns if the file calls a pressure of the model corrected, or that of the cabin.
@@ -94,7 +89,7 @@ void note_wrong_pressure(const Flight& flight, const ModelDefinition& file, Note
     const auto says = [&words](const char* word) {
       return std::find(words.begin(), words.end(), word) != words.end();
     };
-    if (!says("cabin") && (!says("corrected") || began_without_law(file))) continue;
+    if (!says("cabin") && (!says("corrected") || says("not") || !has_foreign_law(file))) continue;
     warn_once(notes,
               fmt::format("name another variable than {} as {} in [variables]: the file describes it as "
                           "'{}'{}",

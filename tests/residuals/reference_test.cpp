@@ -85,15 +85,23 @@ TEST(Reference, PressureThatIsNotStaticIsRefused) {
                "Interior Cabin Static Pressure");
     maker.text(maker.series("PSFRD", "hPa", std::vector<double>(50, 700.0)), "long_name",
                "Raw Static Pressure");
+    maker.text(maker.series("QCR", "hPa", std::vector<double>(50, 70.0)), "long_name",
+               "Raw Dynamic Pressure, Radome");
+    maker.text(maker.series("QC", "hPa", std::vector<double>(50, 250.0)), "long_name",
+               "Ambient pressure, quality controlled");
   }
   const Flight flight(folder.path() / "flight.nc");
   Notes notes;
   const auto read = [&](const std::string& variable) {
     return read_reference("pressure:" + variable, without_laser())->read(flight, {}, notes);
   };
-  for (const char* const variable : {"QCF", "PCAB"}) {
+  for (const char* const variable : {"QCF", "PCAB", "QCR"}) {
     EXPECT_THAT(test::error_of([&] { read(variable); }), test::IsError(Error::Code::variable, variable));
   }
+  read("QC");
+  // A program that tests the pressure of the model itself reads it without a model to compare it with.
+  pressure_reference("PSFRD")->read(flight, {}, notes);
+  EXPECT_TRUE(notes.empty());
   read("PSFRD");
   ASSERT_EQ(notes.size(), 1U);
   EXPECT_EQ(notes[0].severity, Severity::warning);

@@ -72,7 +72,8 @@ TEST(ModelInputs, AmbientTemperatureAsRecoveryTemperatureGivesAWarning) {
 
 // delta-p was added to a pressure that had it already.
 TEST(ModelInputs, CorrectedOrCabinPressureGivesAWarning) {
-  const auto warnings = [](const std::string& long_name, const std::string& source) {
+  const auto warnings = [](const std::string& long_name, double coefficient,
+                           const Provenance& provenance = {}) {
     const test::TemporaryDirectory folder;
     const std::filesystem::path path = folder.path() / "flight.nc";
     {
@@ -83,15 +84,20 @@ TEST(ModelInputs, CorrectedOrCabinPressureGivesAWarning) {
     }
     ModelDefinition file;
     file.variables = {{Quantity::static_pressure, "P"}, {Quantity::dynamic_pressure, "QCF"}};
-    file.law.source = source;
+    file.model.effects = {neutral_effect("static-constant")};
+    file.model.effects[0].parameters = {coefficient};
+    file.provenance = provenance;
     Notes notes;
     model_inputs(Flight(path), file, chain_of(file.model, file.roles()), file.roles(), notes);
     return notes.size();
   };
-  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", "Cooper (2014)"), 1U);
-  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", source_without_law), 0U);
-  EXPECT_EQ(warnings("Interior Cabin Static Pressure", source_without_law), 1U);
-  EXPECT_EQ(warnings("Raw Static Pressure, Fuselage", "Cooper (2014)"), 0U);
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01), 1U);
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.0), 0U);
+  const Provenance refit{{"flights", ProvenanceList{std::string("flight.nc")}}};
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01, refit), 0U);
+  EXPECT_EQ(warnings("Static Pressure, not corrected for position error", 0.01), 0U);
+  EXPECT_EQ(warnings("Interior Cabin Static Pressure", 0.0), 1U);
+  EXPECT_EQ(warnings("Raw Static Pressure, Fuselage", 0.01), 0U);
 }
 
 }  // namespace

@@ -147,6 +147,9 @@ std::vector<std::string> parameter_names(const ModelEffect& effect);
 /// unknown.
 ModelEffect neutral_effect(std::string_view id);
 
+/// Whether an effect of the catalogue changes nothing: its coefficients are neutral.
+bool is_neutral(const ModelEffect& effect);
+
 /// Surface effect with all coefficients zero, to be fitted. @param axes each must be valid
 ModelEffect surface_effect(const std::string& id, const std::array<SurfaceAxis, 2>& axes);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -53,7 +54,7 @@ class PressureOnSamples final : public ReferenceOnSamples {
 
 class PressureReference final : public Reference {
  public:
-  /// @param of_model variable of the model's static pressure; may be empty
+  /// @param of_model variable of the model's static pressure; if empty, `variable` is trusted
   PressureReference(std::string variable, std::string of_model)
       : variable_(std::move(variable)), of_model_(std::move(of_model)) {}
 
@@ -71,7 +72,7 @@ class PressureReference final : public Reference {
     const UnitConversion conversion =
         believed(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
     flight.require_values(variable_);
-    require_static(flight, notes);
+    if (!of_model_.empty() && variable_ != of_model_) require_static(flight, notes);
     if (!of_model_.empty() && is_computed_from(flight, variable_, of_model_)) {
       const std::string what = variable_ == of_model_ ? "is" : "is computed from " + of_model_ + ",";
       notes.emplace_back(Severity::warning, fmt::format("use an independent reference: {} {} the static "
@@ -91,23 +92,31 @@ class PressureReference final : public Reference {
   }
 
  private:
-  /// Warns about the raw pressure of another system. @throws Error if the file describes the variable as a
-  /// dynamic or cabin pressure
+  /// Warns about the raw pressure of another system. @throws Error if the file describes the variable as
+  /// another pressure, and not as a static pressure
   void require_static(const Flight& flight, Notes& notes) const {
-    for (const Quantity role : {Quantity::dynamic_pressure, Quantity::cabin_pressure}) {
-      const std::string name(info_of(role).name);
-      for (const RoleCandidate& candidate : role_candidates(flight, name)) {
-        if (candidate.variable != variable_ || candidate.score < sure_score) continue;
-        throw Error(
-            Error::Code::variable,
-            fmt::format("{}: {}, the reference, is a {}, not a static pressure: {}; give another with "
-                        "--reference",
-                        flight.path().string(), variable_, name, candidate.why));
+    const auto candidate = [&](Quantity role) -> std::optional<RoleCandidate> {
+      for (RoleCandidate& each : role_candidates(flight, info_of(role).name)) {
+        if (each.variable == variable_) return std::move(each);
       }
+      return std::nullopt;
+    };
+    using Q = Quantity;
+    const bool may_be_static = candidate(Q::static_pressure).has_value();
+    for (const Quantity role :
+         {Q::dynamic_pressure, Q::radome_dynamic_pressure, Q::attack_differential_pressure,
+          Q::sideslip_differential_pressure, Q::cabin_pressure}) {
+      if (may_be_static) break;
+      const std::optional<RoleCandidate> other = candidate(role);
+      if (!other || other->score < sure_score) continue;
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: {}, the reference, is a {}, not a static pressure: {}; give another with "
+                              "--reference",
+                              flight.path().string(), variable_, info_of(role).name, other->why));
     }
     const std::string& long_name = flight.variable(variable_).long_name;
     const std::vector<std::string> words = plain_words(long_name);
-    if (variable_ == of_model_ || std::find(words.begin(), words.end(), "raw") == words.end()) return;
+    if (std::find(words.begin(), words.end(), "raw") == words.end()) return;
     notes.push_back(warning_note(
         fmt::format("use --reference static:MODEL with a model of {0} ('pcor inspect' lists published "
                     "models): the file describes {0} as '{1}', so the residual contains its error",
