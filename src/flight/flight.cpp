@@ -262,7 +262,10 @@ struct Flight::Implementation {
                    ": {} is not in this file; it has {}; if that is the same measurement, change {} in the "
                    "[variables] of the model that names it",
                    shown, fmt::format("{}", fmt::join(alike, ", ")), role);
-    if (!corrected.empty() || (fitting.empty() && is_ratio))
+    const bool has_raw = std::any_of(fitting.begin(), fitting.end(), [&](const VariableInfo* each) {
+      return shared_words(words, each->long_name) > 1 && shared_words("cabin", each->long_name) == 0;
+    });
+    if ((!corrected.empty() && !has_raw) || (fitting.empty() && is_ratio))
       file->refuse(Error::Code::variable,
                    ": {} ({} of the model) is not in this file{}; give another model for this flight, see "
                    "pcor inspect {}",

@@ -60,7 +60,7 @@ Statistics ResidualSums::statistics(bool level_is_determined) const {
     Eigen::MatrixXd products = by_gps;
     products.diagonal().head(nuisances).array() += 1.0;  // their priors
     const Eigen::MatrixXd left = products_after(products, nuisances);
-    constexpr double max_bias = 5.0;  // rms; a real bias of delta-p changes its residuals more
+    constexpr double max_bias = 5.0;  // rms; wind and zero of a part imitate a larger bias
     const bool has_rows = left(1, 1) > rank_limit * left(0, 0);
     const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
     // A residual beyond the noise of GPS makes the error larger (Birge 1932, Physical Review 40, 207).

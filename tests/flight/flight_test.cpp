@@ -560,6 +560,16 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
       << "no role, so no model to change";
 }
 
+TEST_F(FlightTest, RawPressureOfAnotherNameIsProposedInPlaceOfTheCorrectedOne) {
+  make({100}, [&](NetcdfMaker& maker) {
+    maker.text(maker.series("PSXC", "hPa", {1}), "long_name", "Corrected Static Pressure");
+    maker.text(maker.series("STATP", "hPa", {1}), "long_name", "Raw static pressure");
+  });
+  const Flight flight(path());
+  EXPECT_THAT(error_of([&] { flight.conversion("PSFD", "hPa", "static_pressure"); }),
+              IsError(Error::Code::variable, "PSFD", "STATP in hPa"));
+}
+
 TEST_F(FlightTest, AtMostSixMatchingVariablesAreListed) {
   make({100}, [&](NetcdfMaker& maker) {
     for (int i = 1; i < 10; ++i) maker.series("ABCD" + std::to_string(i), "degC", {1});
