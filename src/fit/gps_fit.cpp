@@ -21,7 +21,6 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double max_error = 1.0;        // error of delta-p in one direction of the coefficients, hPa
 constexpr double min_information = 3.0;  // ratio to the prior information
 constexpr double block_time = 300.0;     // s
 
@@ -248,8 +247,8 @@ class GpsSolver {
     for (Eigen::Index k = 0; k < count_; ++k) {
       const double eigenvalue = eigen.eigenvalues()[k];
       const double error = error_along(directions.col(k)) / std::sqrt(1.0 + std::max(0.0, eigenvalue));
-      (error < max_error ? known : unknown).push_back(k);
-      if (error < max_error && eigenvalue < min_information) weak.push_back(k);
+      (error < max_defect_error ? known : unknown).push_back(k);
+      if (error < max_defect_error && eigenvalue < min_information) weak.push_back(k);
     }
     free_ = directions(Eigen::all, known);
     held_ = directions(Eigen::all, unknown);

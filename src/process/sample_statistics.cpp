@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <pcor/residuals/statistics.hpp>
+
 namespace pcor::internal {
 namespace {
 
@@ -103,9 +105,8 @@ void SampleStatistics::finish() {
     summary_.mean_defect = summary_.min_defect = summary_.max_defect = missing<double>();
   }
   if (uncertain_samples_ == 0) return;
-  constexpr double max_uncertainty = 1.0;  // hPa, as in a fit by GPS
   summary_.defect_uncertainty = sum_of_uncertainties_ / static_cast<double>(uncertain_samples_);
-  if (summary_.defect_uncertainty < max_uncertainty) return;
+  if (summary_.defect_uncertainty < max_defect_error) return;
   summary_.notes.push_back(warning_note(
       fmt::format("delta-p is not determined: its standard uncertainty is {:.2f} hPa on average; "
                   "refit the model with a laser, a second static system, or GPS wind in circles "

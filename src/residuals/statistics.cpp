@@ -14,12 +14,6 @@ namespace pcor {
 
 using namespace internal;
 
-namespace {
-
-constexpr double max_level_error = 1.0;  // hPa
-
-}  // namespace
-
 void ResidualSums::add(double residual, double noise) {
   ++samples;
   sum += residual;
@@ -40,7 +34,7 @@ void ResidualSums::add(const ResidualSums& other) {
 }
 
 bool ResidualSums::determines_level() const {
-  return by_gps.size() == 0 || statistics().bias_error < max_level_error;
+  return by_gps.size() == 0 || statistics().bias_error < max_defect_error;
 }
 
 Statistics ResidualSums::statistics(bool level_is_determined) const {
@@ -70,7 +64,7 @@ Statistics ResidualSums::statistics(bool level_is_determined) const {
     const double by_level = both.dot(left.col(2).head(2));
     if (!has_rows)
       result.bias = nan;
-    else if (level_is_determined && result.bias_error < max_level_error &&
+    else if (level_is_determined && result.bias_error < max_defect_error &&
              std::abs(by_level) < max_bias * result.rms)
       result.bias = by_level;
   }

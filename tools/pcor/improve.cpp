@@ -33,8 +33,7 @@ struct ImproveArguments {
 };
 
 std::string next_step(const Improvement& improvement, const ImproveArguments& options) {
-  constexpr double max_error = 1.0;  // error of delta-p, hPa, as in a refit
-  if (improvement.fit.defect_error > max_error)
+  if (improvement.fit.defect_error > max_defect_error)
     return fmt::format(
         "The flights do not determine delta-p: its standard error is {:.2f} hPa. Give a further --reference",
         improvement.fit.defect_error);

@@ -239,8 +239,8 @@ void print_flown(const Inspection& flight) {
 
 void print_by_gps(const GpsDesign& gps) {
   const auto text = [](double error, const char* manoeuvre) {
-    return error < GpsDesign::max_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
-                                        : fmt::format("undetermined (requires {})", manoeuvre);
+    return error < max_defect_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
+                                    : fmt::format("undetermined (requires {})", manoeuvre);
   };
   say("delta-p by GPS ({}), standard errors at best (usual atmosphere; refit states those of the flight): "
       "level {}, change with airspeed {}{}\n",

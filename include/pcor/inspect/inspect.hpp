@@ -14,6 +14,7 @@
 #include <pcor/regimes/regimes.hpp>
 #include <pcor/report/report.hpp>
 #include <pcor/residuals/samples.hpp>
+#include <pcor/residuals/statistics.hpp>
 #include <pcor/roles/model_candidates.hpp>
 
 namespace pcor {
@@ -26,9 +27,7 @@ struct GpsDesign {
   bool by_wind = false;
   bool by_height = false;
 
-  static constexpr double max_error = 1.0;  ///< error of a part that the flight determines, hPa
-
-  bool determines_level() const { return level < max_error; }
+  bool determines_level() const { return level < max_defect_error; }
 };
 
 template <class Field>

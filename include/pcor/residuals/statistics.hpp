@@ -5,6 +5,10 @@
 
 namespace pcor {
 
+/// Standard error of delta-p, hPa, below which flights determine it. A correction removes errors of 1 to 6
+/// hPa.
+inline constexpr double max_defect_error = 1.0;
+
 /// Statistics of residuals, hPa. NaN if there are too few samples.
 struct Statistics {
   std::size_t samples = 0;
