@@ -82,9 +82,10 @@ std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, d
   const auto find = [&](const char* kind, const auto& stated, const auto& list) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       if (list[i].end > first_time && list[i].begin <= last_time) continue;
-      outside.push_back(
-          {fmt::format("[[{}]] {} to {}", kind, utc_text(list[i].begin), utc_text(list[i].end, "%H:%M:%S")),
-           stated[i].begin < day});
+      const bool is_one_day = midnight_before(list[i].begin) == midnight_before(list[i].end);
+      outside.push_back({fmt::format("[[{}]] {} to {}", kind, utc_text(list[i].begin),
+                                     utc_text(list[i].end, is_one_day ? "%H:%M:%S" : "%Y-%m-%d %H:%M:%S")),
+                         stated[i].begin < day});
     }
   };
   find("add", intervals.add, moments.add);

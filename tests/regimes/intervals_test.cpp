@@ -60,6 +60,16 @@ end = "21:30:00"
   EXPECT_TRUE(intervals_outside(user, midnight + 20.0 * hour, midnight + 24.0 * hour).empty());
 }
 
+TEST(UserIntervals, EndOnAnotherDayHasItsDate) {
+  const UserIntervals user = parse(R"([[veto]]
+begin = 2004-02-17T10:00:00
+end = 2004-02-18T09:00:00
+)");
+  const auto outside = intervals_outside(user, midnight, midnight + hour);
+  ASSERT_EQ(outside.size(), 1U);
+  EXPECT_EQ(outside[0].text, "[[veto]] 2004-02-17 10:00:00 to 2004-02-18 09:00:00");
+}
+
 // "level 1-3" and the like, in seconds.
 std::vector<std::string> in_words(const std::vector<Interval>& intervals) {
   std::vector<std::string> words;
