@@ -311,12 +311,17 @@ FlightSamples read_samples(const Flight& flight, const ModelDefinition& model, c
   }
   samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {
-    for (const OutsideInterval& outside :
-         intervals_outside(*options.intervals, samples.time.front(), samples.time.back())) {
-      std::string note = fmt::format("{} changes nothing: it is outside the flight, {} to {}", outside.text,
+    std::vector<OutsideInterval> outside =
+        intervals_outside(*options.intervals, samples.time.front(), samples.time.back());
+    if (!outside.empty()) {
+      // A file for several flights may have dated intervals for each: the note names a time of day first.
+      std::stable_partition(outside.begin(), outside.end(), std::mem_fn(&OutsideInterval::is_time_of_day));
+      const std::string of_which =
+          outside.size() == 1 ? " changes nothing: it is"
+                              : fmt::format(" and {} more change nothing: they are", outside.size() - 1);
+      std::string note = fmt::format("{}{} outside the flight, {} to {}", outside.front().text, of_which,
                                      utc_text(samples.time.front()), utc_text(samples.time.back()));
-      // A file for several flights may have dated intervals for each.
-      const bool is_for_this = outside.is_time_of_day || !options.intervals->flight.empty();
+      const bool is_for_this = outside.front().is_time_of_day || !options.intervals->flight.empty();
       samples.notes.push_back(is_for_this ? warning_note(std::move(note)) : Note(std::move(note)));
     }
     samples.intervals =

@@ -361,6 +361,14 @@ class Compare(ComparisonTest):
         text = self.run_tool("compare", ONE, "-m", self.model(), "--intervals", intervals).stdout
         self.assertRegex(text, "(?m)^warning.*03:10:00 to 03:11:00")
 
+    def test_all_intervals_outside_the_flight_give_one_note(self):
+        intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n' + "".join(
+            f'[[veto]]\nbegin = {begin}\nend = {end}\n' for begin, end in
+            (("2011-11-18T20:10:00Z", "2011-11-18T20:11:00Z"), ("03:10:00", "03:11:00"), ("04:10:00", "04:11:00"))))
+        notes = [note for note in self.compare("--intervals", intervals)["notes"] if "[[veto]]" in note["text"]]
+        self.assertEqual([note["severity"] for note in notes], ["warning"])
+        self.assertRegex(notes[0]["text"], r"03:10:00 to 03:11:00 and 2 more")
+
     def test_an_added_regime_has_its_statistics(self):
         intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[add]]\nregime = "cloud"\n'
                                'begin = 2011-11-17T20:10:00Z\nend = 2011-11-17T20:12:00Z\n')
