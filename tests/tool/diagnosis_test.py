@@ -117,6 +117,10 @@ class Add(DiagnosisTest):
         self.assertEqual(effects[1]["scaling"], {"static_pressure": -1, "dynamic_pressure": 1})
         self.assertEqual(effects[2], {"id": "ground-effect", "parameters": {"defect": 0.0}})
 
+    def test_a_scaling_multiplies_the_whole_formula(self):
+        text = self.done("add", "psfd-thermal:static_pressure=1", "-m", self.model(), "-o", self.path / "out.toml").stdout
+        self.assertIn(" (-per_kelvin * (transducer_temperature - 290) - zero) * (p/700 hPa)^1 ", text)
+
     def test_adds_a_step_between_flights(self):
         model = self.add("aircraft-step:since=4338.5", "--flight", ONE)
         self.assertEqual(model["variables"]["date"], "Time")

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/effects/catalogue.hpp>
@@ -94,10 +95,11 @@ void print(const ModelDefinition& extended, const Extension& extension, const Ad
                                     extended.fit(i, k).fixed ? " (fixed)" : ""));
     }
     std::string formula = info ? std::string(info->formula) : effect.formula;
-    if (const Scaling& scaling = effect.scaling;
-        scaling.static_pressure != 0 || scaling.dynamic_pressure != 0)
-      formula +=
-          fmt::format(" * (p/700 hPa)^{} * (q/70 hPa)^{}", scaling.static_pressure, scaling.dynamic_pressure);
+    if (!effect.scaling.is_none()) formula = "(" + formula + ")";
+    for (const auto& [pressure, power] : {std::pair("p/700 hPa", effect.scaling.static_pressure),
+                                          std::pair("q/70 hPa", effect.scaling.dynamic_pressure)}) {
+      if (power != 0) formula += fmt::format(" * ({})^{}", pressure, power);
+    }
     say("{:<20} {:<15} {:<48} {}\n", effect.id, info_of(info ? info->location : effect.location).name,
         formula, fmt::join(start, ", "));
   }
