@@ -127,7 +127,10 @@ class Add(DiagnosisTest):
         self.assertEqual(model["effect"][-1]["parameters"], {"step": 0.0, "since": 4338.5})
         dated = self.add("aircraft-step:since=2011-11-17", "--flight", ONE)
         self.assertEqual(dated["effect"][-1]["parameters"]["since"], 4338.0)
-        self.refused("add", "aircraft-step", "-m", self.model(), "-o", self.path / "no.toml", words=["since=2011-11-17"])
+        for effect, word in (("aircraft-step", "since=2011-11-17"), ("aircraft-step:static_pressure=1", "since=2011-11-17"),
+                             ("aircraft-step:since=2011-02-31", "YYYY-MM-DD"), ("aircraft-step:since=2011-11", "YYYY-MM-DD")):
+            with self.subTest(effect):
+                self.refused("add", effect, "-m", self.model(), "-o", self.path / "no.toml", words=[word])
 
     def test_a_calibration_is_fitted_by_temperature(self):
         """A refit of delta-p put its coefficients to their bounds."""

@@ -37,23 +37,27 @@ std::string plain_stem(const std::string& model) {
   return stem.empty() || stem.front() == '-' ? "model" + stem : stem;
 }
 
-double number_in(const std::string& text, const std::string& argument) {
+double number_in(const std::string& text, const std::string& argument,
+                 const char* required = "number; write NAME=NUMBER") {
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto [rest, status] = std::from_chars(text.data(), end, value);
   if (status != std::errc() || rest != end)
-    throw Error(Error::Code::usage,
-                fmt::format("{}: '{}' is not a number; write NAME=NUMBER", argument, text));
+    throw Error(Error::Code::usage, fmt::format("{}: '{}' is not a {}", argument, text, required));
   return value;
 }
 
 /// Value of a shape parameter; days since 2000-01-01 also as a date.
 double value_of(const ParameterInfo& shape, const std::string& text, const std::string& argument) {
+  if (shape.unit != "d") return number_in(text, argument);
   std::tm date{};
-  const char* const rest = shape.unit == "d" ? strptime(text.c_str(), "%Y-%m-%d", &date) : nullptr;
-  if (rest == nullptr || *rest != '\0') return number_in(text, argument);
+  const char* const rest = strptime(text.c_str(), "%Y-%m-%d", &date);
+  const int day = date.tm_mday;
+  const auto seconds = static_cast<double>(timegm(&date));  // changes 31 February to 3 March
+  if (rest == nullptr || *rest != '\0' || date.tm_mday != day)
+    return number_in(text, argument, "date; write NAME=YYYY-MM-DD or the days since 2000-01-01");
   constexpr double seconds_of_day = 86400.0, days_to_2000 = 10957.0;
-  return static_cast<double>(timegm(&date)) / seconds_of_day - days_to_2000;
+  return seconds / seconds_of_day - days_to_2000;
 }
 
 constexpr std::pair<std::string_view, int Scaling::*> powers[]{
@@ -140,11 +144,10 @@ ModelEffect shaped_effect(const std::string& argument) {
                   fmt::format("{}: '{}' is not a shape; write {}:NAME=NUMBER", argument, shape, id));
     set_shape(effect, shape.substr(0, sign), shape.substr(sign + 1), argument);
   }
-  if (argument == effects::AircraftStep::info().id)
+  if (id == effects::AircraftStep::info().id && argument.find("since=") == std::string::npos)
     throw Error(
         Error::Code::usage,
-        fmt::format("{0}: the date of the change is missing; write, for example, {0}:since=2011-11-17",
-                    argument));
+        fmt::format("{0}: the date of the change is missing; write, for example, {0}:since=2011-11-17", id));
   return effect;
 }
 
