@@ -253,6 +253,7 @@ class Help(ComparisonTest):
         old = self.done("check", ONE, "-m", self.model(), "--second", second)
         self.assertEqual(now.stdout, old.stdout)
         self.assertEqual((now.stderr, old.stderr),
+            self.refused(word, "refitt", words=["'refitt'", "did you mean refit?"], status=2)
                          ("", "pcor: --second was renamed to --reference static:OTHER.toml; the old name is deprecated\n"))
         arguments = ("diagnose", ONE, "-m", self.model(), "--no-file-variables")
         brief, now, old = (self.done(*arguments, *more) for more in ((), ("--full",), ("--all",)))

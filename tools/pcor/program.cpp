@@ -118,6 +118,10 @@ int run(int argc, char** argv) {
     if (!misplaced.empty()) throw CLI::ArgumentMismatch(misplaced);
     require_parallel_command(program);
   } catch (const CLI::Success& help_or_version) {
+    if (program.get_subcommands().empty() && words.front()[0] != '-') {
+      tell(usage_message(program, "", words));
+      return wrong_usage;
+    }
     std::ostringstream text;
     program.exit(help_or_version, text, text);
     std::string printed = text.str();
