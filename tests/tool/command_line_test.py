@@ -139,12 +139,22 @@ class Outputs(ComparisonTest):
         text = self.done(*command, cwd=self.path).stdout
         self.assertIn("\noverwrote o.toml\n", text)
         self.assertIn("\nwrote r.json\n", text)
-        self.refused("inspect", ONE, "--write-model", self.path / "o.toml", words=["o.toml", "fitted"])
+        self.refused("inspect", ONE, "--write-model", self.path / "o.toml", words=["o.toml", "coefficients"])
         before = comparison_test.contents(self.path)
         result = self.run_tool(*command, "--no-clobber", cwd=self.path)
         self.assertEqual((result.returncode, result.stdout, result.stderr.count("\n")), (1, "", 1))
         self.assertIn("o.toml", result.stderr)
         self.assertEqual(comparison_test.contents(self.path), before)
+
+    def test_inspect_overwrites_only_a_model_without_coefficients(self):
+        """An added effect gives a model its provenance, but no coefficient."""
+        zero, more, law = (self.path / name for name in ("zero.toml", "more.toml", "law.toml"))
+        self.done("inspect", ONE, "--write-model", zero)
+        self.done("add", "static-mach", "-m", zero, "-o", more)
+        self.done("inspect", ONE, "--write-model", more)
+        self.assertEqual(more.read_bytes(), zero.read_bytes())
+        shutil.copy(SOURCE / "data/models/c130-psfd-2014.toml", law)
+        self.refused("inspect", ONE, "--write-model", law, words=["law.toml", "coefficients"])
 
     def test_an_output_has_fifteen_lines_and_details_with_verbose(self):
         model = self.model()
@@ -243,6 +253,7 @@ class Help(ComparisonTest):
         for word in ("help", "--help", "-h"):
             self.assertEqual(self.done(word, "refit").stdout, self.done("refit", "--help").stdout)
             self.assertEqual(self.done(word).stdout, self.done("--help").stdout)
+            self.refused(word, "refitt", words=["'refitt'", "did you mean refit?"], status=2)
 
     def test_reference_of_temperature_needs_iterate(self):
         self.assertIn("with --iterate only", self.done("temperature", "--help").stdout)
@@ -253,7 +264,6 @@ class Help(ComparisonTest):
         old = self.done("check", ONE, "-m", self.model(), "--second", second)
         self.assertEqual(now.stdout, old.stdout)
         self.assertEqual((now.stderr, old.stderr),
-            self.refused(word, "refitt", words=["'refitt'", "did you mean refit?"], status=2)
                          ("", "pcor: --second was renamed to --reference static:OTHER.toml; the old name is deprecated\n"))
         arguments = ("diagnose", ONE, "-m", self.model(), "--no-file-variables")
         brief, now, old = (self.done(*arguments, *more) for more in ((), ("--full",), ("--all",)))

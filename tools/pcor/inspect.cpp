@@ -398,8 +398,12 @@ std::vector<Inspection> look(const InspectArguments& options, bool text) {
   return all;
 }
 
-/// @throws Error if the file is a fitted model, whose coefficients would be lost
-void keep_fitted_model(const std::string& path) {
+bool has_own_coefficients(const ModelEffect& effect) {
+  return effect.is_formula() || effect.parameters != neutral_effect(effect.id).parameters;
+}
+
+/// @throws Error if the file is a model whose coefficients or formulas would be lost
+void keep_coefficients(const std::string& path) {
   std::error_code code;
   if (!std::filesystem::is_regular_file(path, code)) return;
   ModelDefinition model;
@@ -408,9 +412,12 @@ void keep_fitted_model(const std::string& path) {
   } catch (const Error&) {
     return;  // another file
   }
-  if (model.provenance.empty() && model.covariance.parameters.empty()) return;
+  const std::vector<ModelEffect>& effects = model.model.effects;
+  if (std::none_of(effects.begin(), effects.end(), has_own_coefficients)) return;
   throw Error(Error::Code::usage,
-              fmt::format("{}: this is a fitted model; give another name to --write-model", path));
+              fmt::format("{}: the coefficients of this model would be lost; give another name to "
+                          "--write-model",
+                          path));
 }
 
 /// Writes the model, with candidate variables of open roles as comments.
@@ -451,7 +458,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
 void run(const InspectArguments& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
   prepare_outputs(options.common, {options.model}, inputs);
-  keep_fitted_model(options.model);
+  keep_coefficients(options.model);
   JsonResult json(options.common);
   const bool text = wants_text(options.common, {options.model});
   const Inspections result{look(options, text)};
