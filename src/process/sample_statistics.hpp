@@ -45,7 +45,7 @@ class SampleStatistics {
   std::size_t next_ = 0;                     // number of samples so far
   std::vector<bool> outside_{};              // records
   std::size_t impossible_temperatures_ = 0;  // corrected samples whose thermometer gives no temperature
-  double sum_of_impossible_ = 0.0;           // of the thermometer in these samples, K
+  double sum_of_impossible_ = 0.0;           // sum of the thermometer values in these samples, K
   std::size_t uncertain_samples_ = 0;        // samples in flight with an uncertainty of delta-p
   double sum_of_uncertainties_ = 0.0;        // hPa
 };
