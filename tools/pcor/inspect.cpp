@@ -398,10 +398,6 @@ std::vector<Inspection> look(const InspectArguments& options, bool text) {
   return all;
 }
 
-bool has_own_coefficients(const ModelEffect& effect) {
-  return effect.is_formula() || effect.parameters != neutral_effect(effect.id).parameters;
-}
-
 /// @throws Error if the file is a model whose coefficients or formulas would be lost
 void keep_coefficients(const std::string& path) {
   std::error_code code;
@@ -413,7 +409,7 @@ void keep_coefficients(const std::string& path) {
     return;  // another file
   }
   const std::vector<ModelEffect>& effects = model.model.effects;
-  if (std::none_of(effects.begin(), effects.end(), has_own_coefficients)) return;
+  if (std::all_of(effects.begin(), effects.end(), is_neutral)) return;
   throw Error(Error::Code::usage,
               fmt::format("{}: the coefficients of this model would be lost; give another name to "
                           "--write-model",
