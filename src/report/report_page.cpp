@@ -183,14 +183,14 @@ std::string head(const Report& report) {
                      element("p", report.subtitle, R"( class="subtitle")") + "</header>\n";
   if (!report.summary.empty())
     html += R"(<section class="summary" aria-label="Summary">)" + summary(report.summary) + "</section>\n";
-  // A command follows its purpose: "To apply it: pcor process ..." or "Next: ...". Each line is a step.
+  // A command follows its purpose: "To apply it: pcor process ...". Each line is a step.
   if (!report.next.empty()) {
     html += R"(<section class="next" aria-label="Next step">)";
     std::istringstream lines(report.next);
     for (std::string step; std::getline(lines, step);) {
       const std::size_t colon = step.rfind(": ");
-      const bool has_command = colon != std::string::npos && (step.rfind("To ", colon) != std::string::npos ||
-                                                              step.rfind("Next: ", 0) == 0);
+      const bool has_command = colon != std::string::npos && (step.find("pcor", colon) != std::string::npos ||
+                                                              step.compare(colon, 8, ": ncdump") == 0);
       const std::size_t end = has_command ? colon + 1 : step.size();
       html += fmt::format(
           "<p>{}{}</p>", typeset(step.substr(0, end)),

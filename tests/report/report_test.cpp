@@ -192,10 +192,10 @@ TEST(Report, UncertaintiesUseThePlusMinusSign) {
 
 TEST(Report, EachLineOfTheNextStepHasItsCommand) {
   Report report = report_of(3, 1);
-  report.next = "To refit one: pcor refit a.nc\nTo refit both: pcor refit b.nc";
+  report.next = "First edit a.toml. Then refit: pcor refit a.nc\nTo look at it: ncdump -v PSXC b.nc";
   const std::string html = report_html(report);
-  for (const char* const step : {"<p>To refit one: <code>pcor refit a.nc</code></p>",
-                                 "<p>To refit both: <code>pcor refit b.nc</code></p>"})
+  for (const char* const step : {"<p>First edit a.toml. Then refit: <code>pcor refit a.nc</code></p>",
+                                 "<p>To look at it: <code>ncdump -v PSXC b.nc</code></p>"})
     EXPECT_THAT(html, HasSubstr(step));
 }
 
