@@ -206,6 +206,7 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
   });
   flights.require_unchanged();
   Checks checks;
+  checks.has_model = model.has_value();
   CheckedFlights read;
   std::vector<std::string> unusable;
   std::vector<FlightNote> notes;

@@ -223,13 +223,13 @@ std::string summary_of(const Checks& checks) {
     return fmt::format("{} of {} checks inconsistent: {}", names.size(), ran, fmt::join(names, ", "));
   if (consistent > 0) {
     return fmt::format(
-        "No check contradicts the {}{}", checks.model.empty() ? "pressures" : "model",
+        "No check contradicts the {}{}", checks.has_model ? "model" : "pressures",
         inconclusive.empty() ? "" : fmt::format("; {} of {} checks inconclusive", inconclusive.size(), ran));
   }
   for (const CheckResult* const result : inconclusive) {
     const TestStatistic& key = result->key;
     names.push_back(
-        fmt::format("{} {:+.1f} +- {:.1f} {}", result->name, key.value, key.standard_error, key.unit));
+        fmt::format("{} {:+.3f} +- {:.3f} {}", result->name, key.value, key.standard_error, key.unit));
   }
   return fmt::format("Nothing is decided: {}{} not run",
                      names.empty() ? "" : fmt::format("{} inconclusive, ", fmt::join(names, ", ")),

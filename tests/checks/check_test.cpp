@@ -419,10 +419,13 @@ TEST_F(CheckTest, ReportTitleCountsInconclusiveChecks) {
     result.name = "layers";
     result.ran = true;
     result.verdict = verdict;
+    result.key.value = 0.223;
+    result.key.standard_error = 0.007;
   }
-  EXPECT_THAT(check_report(checks).title, HasSubstr("1 of 2"));
+  EXPECT_THAT(check_report(checks).title, testing::AllOf(HasSubstr("1 of 2"), HasSubstr("pressures")));
   checks.results[0].ran = false;
-  EXPECT_THAT(summary_of(checks), testing::AllOf(HasSubstr("1 not run"), HasSubstr("layers +0.0")));
+  EXPECT_THAT(summary_of(checks),
+              testing::AllOf(HasSubstr("1 not run"), HasSubstr("layers +0.223 +- 0.007")));
 }
 
 // The difference includes the defect of the second pair, a few hPa.

@@ -103,7 +103,8 @@ struct CheckOptions {
 
 /// Results of all checks.
 struct Checks {
-  std::string model;  ///< description of the model, or "as recorded"
+  std::string model;       ///< description of the model, or "as recorded"
+  bool has_model = false;  ///< false: the pressures are those of the flight file
   std::vector<std::string> flights;
   std::vector<CheckResult> results;  ///< results of all checks, in the order of the memo
   Notes notes;
