@@ -47,13 +47,12 @@ double condition_number(const Reduction& reduction, const FitTask& task,
       throw Error(
           Error::Code::fit,
           fmt::format(
-              "{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}{}{}",
+              "{} has no influence on these flights, so it cannot be fitted; fix it: --fix {}{}",
               to_string(k), to_string(k),
-              sees_static_defect(task)
-                  ? ""
-                  : ", or add a reference other than total: to fit delta-p, which a total "
-                    "pressure does not contain",
-              task.model.model.policy.minimum > -infinity
+              !sees_static_defect(task)
+                  ? ", or add a reference other than total: to fit delta-p, which a total "
+                    "pressure does not contain"
+              : task.model.model.policy.minimum > -infinity
                   ? fmt::format(", unless delta-p is at its minimum, {:g} hPa, because the reference is "
                                 "far below the model: see the bias by compare",
                                 task.model.model.policy.minimum)

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include "support/error_of.hpp"
 #include "support/short_flight.hpp"
 
 using pcor::FittedParameter;
@@ -123,6 +124,14 @@ TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
     // The noise of both is that of the residual less the misfit; the fits may differ within their tolerance.
     EXPECT_NEAR(both.parameters[p].standard_error, error, 0.05 * error);
   }
+}
+
+TEST(SeveralReferences, RefusalByTotalPressureOmitsTheMinimum) {
+  ModelDefinition model = laser_model();
+  model.model.policy.minimum = 1.113;
+  const auto error = pcor::test::error_of([&] { fit(model, {"total:PSFRD+QCFR"}); });
+  EXPECT_THAT(error, pcor::test::IsError(pcor::Error::Code::fit, "static-constant.a0"));
+  EXPECT_THAT(error, testing::Not(pcor::test::IsError(pcor::Error::Code::fit, "1.113")));
 }
 
 TEST(SeveralReferences, ReportStatisticsOfTheFirstReference) {
