@@ -492,16 +492,16 @@ class TemperatureCalibration {
 
 }  // namespace
 
-double TemperatureResult::largest_correction() const {
-  double largest = 0.0;
+TemperatureCorrection TemperatureResult::largest_correction() const {
+  TemperatureCorrection largest;
   for (const TemperatureCorrection& at : corrections) {
-    if (std::abs(at.correction) > std::abs(largest)) largest = at.correction;
+    if (at.min_size() > largest.min_size()) largest = at;
   }
   return largest;
 }
 
 bool TemperatureResult::is_implausible() const {
-  return std::abs(largest_correction()) > 5.0 * usual_thermometer_error;
+  return largest_correction().min_size() > 5.0 * usual_thermometer_error;
 }
 
 TemperatureResult fit_temperature(const FlightSet& flights, const ModelDefinition& model,

@@ -38,12 +38,15 @@ bool is_beyond_prior(const LawError& error) {
 std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
   std::vector<std::string> warnings;
   if (result.is_implausible()) {
-    const double largest = result.largest_correction();
+    const TemperatureCorrection largest = result.largest_correction();
+    const bool recovers = result.model.variables.count(Quantity::recovery_temperature) > 0;
     warnings.push_back(fmt::format(
-        "compare the result with the recorded ambient temperature: a correction of {:+.1f} K is {:.0f} times "
-        "the usual error of a thermometer, {} K; a wrong recovery factor, a lag or an error of the heights "
-        "is more likely",
-        largest, std::abs(largest) / usual_thermometer_error, usual_thermometer_error));
+        "compare the result with {}: a correction of {} K is {:.0f} times the usual error of a thermometer, "
+        "{} K; {}a lag or an error of the heights is more likely",
+        recovers ? "the recorded ambient temperature" : "another thermometer",
+        with_error(largest.correction, largest.standard_error),
+        std::abs(largest.correction) / usual_thermometer_error, usual_thermometer_error,
+        recovers ? "a wrong recovery factor, " : ""));
   }
   const auto differ = [&warnings](const std::vector<PartCorrection>& parts, double spread, const char* who) {
     if (!(spread > 0.0)) return;

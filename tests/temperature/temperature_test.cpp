@@ -28,6 +28,7 @@
 #include "support/many_seeds.hpp"
 #include "support/says.hpp"
 #include "support/short_flight.hpp"
+#include "temperature/temperature_notes.hpp"
 
 using namespace pcor::internal;
 
@@ -609,6 +610,17 @@ TEST(TemperatureText, ErrorsHaveTwoDigits) {
   EXPECT_EQ(with_error(-0.53712, 0.0996), "-0.54 +- 0.10");
   EXPECT_EQ(with_error(12.3, 34.0), "+12 +- 34");
   EXPECT_EQ(with_error(-0.5, 0.012, "±"), "-0.500 ± 0.012");
+}
+
+TEST(TemperatureText, ImplausibleCorrectionExceedsItsStandardErrors) {
+  TemperatureResult result;
+  result.corrections = {{-50.0, -1.0, 0.1}, {20.0, -1.8, 0.4}};
+  EXPECT_FALSE(result.is_implausible()) << "-1.8 +- 0.4 K may be -1.0 K";
+  result.corrections[1].standard_error = 0.1;
+  EXPECT_TRUE(result.is_implausible());
+  EXPECT_THAT(temperature_warnings(result), ElementsAre(Not(HasSubstr("recovery factor"))));
+  result.model.variables[Quantity::recovery_temperature] = "TTRR";
+  EXPECT_THAT(temperature_warnings(result), ElementsAre(HasSubstr("recovery factor")));
 }
 
 template <class Item>

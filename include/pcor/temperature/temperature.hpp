@@ -4,6 +4,7 @@
 #include <pcor/fit/refit.hpp>
 #include <pcor/report/report.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -104,6 +105,9 @@ struct TemperatureCorrection {
   double temperature = 0.0;     ///< degC
   double correction = 0.0;      ///< K
   double standard_error = 0.0;  ///< K
+
+  /// Absolute value less two standard errors, K.
+  double min_size() const { return std::abs(correction) - 2.0 * standard_error; }
 };
 
 template <class Field>
@@ -239,9 +243,9 @@ struct TemperatureResult {
   Notes notes{};                        ///< notes for the user, one sentence each, by decreasing severity
   Notes notes_on_degree{};              ///< the notes on the choice of the degree
 
-  /// Correction with the largest absolute value, K; 0 without corrections.
-  double largest_correction() const;
-  /// Whether the largest correction exceeds five times the usual error of a thermometer, 0.3 K.
+  /// Correction with the largest `min_size`; 0 K if all are negative.
+  TemperatureCorrection largest_correction() const;
+  /// Whether its `min_size` exceeds five times the usual error of a thermometer, 0.3 K.
   bool is_implausible() const;
 };
 
