@@ -160,6 +160,7 @@ TEST(GpsFit, HeightAloneDoesNotDetermineTheLevel) {
   const RefitResult result = fit(simulated("c130-eq18", warm_thermometer), laser_model(), {"height"});
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
+  EXPECT_THAT(result.notes, testing::Not(Contains(pcor::test::Says("thermometer"))));
   EXPECT_TRUE(result.worse.empty());
 }
 
