@@ -224,7 +224,7 @@ class Hints(ComparisonTest):
         with netCDF4.Dataset(self.path / "0.nc") as named, netCDF4.Dataset(self.path / "1.nc") as given:
             self.assertTrue((named["PSFD"][:] == given["PSFD"][:]).all())
         self.refused("simulate", "c130-shortt", "-o", self.path / "2.nc", words=["c130-short"])
-        self.assertIn("outside the catalogue (unknown)", self.done("simulate", "c130-hidden", "-o", self.path / "3.nc").stdout)
+        self.assertIn("formula (unknown)", self.done("simulate", "c130-hidden", "-o", self.path / "3.nc").stdout)
 
     def test_each_command_prints_its_version(self):
         version = self.run_tool("--version").stdout

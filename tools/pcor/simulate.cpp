@@ -45,7 +45,7 @@ void print(const SimulationSummary& summary, const SimulateArguments& options) {
   if (is_verbose()) print_legs(summary);
   std::vector<std::string> errors = summary.effects;
   for (std::string& error : errors)
-    error = error == "unknown" ? "an effect outside the catalogue (unknown)" : error;
+    error = error == "unknown" ? "an error of the scenario's own formula (unknown)" : error;
   if (!errors.empty()) say("simulated errors: {}\n", fmt::join(errors, ", "));
   say("{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
       summary.variables.size(), options.output);
