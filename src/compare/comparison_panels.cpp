@@ -186,7 +186,10 @@ void ComparisonPanels::add_tables() {
   const std::string bands_caption = fmt::format(
       "Bands with fewer than 30 samples are omitted. Std. error: of the bias, for correlated noise with "
       "drift.{}",
-      comparison_.models.size() == 1 ? "" : " The Mach number is that of '" + label_of_model(first) + "'.");
+      comparison_.models.size() == 1
+          ? ""
+          : " The Mach number is that of '" + label_of_model(first) +
+                "', the noise that of the model with the least noise on each flight.");
   for (const ModelComparison& model : comparison_.models) {
     ReportTable worst{title_of("The worst minutes", model),
                       "The minutes with the largest rms residual, and their regimes.",
