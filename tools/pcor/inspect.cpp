@@ -242,8 +242,8 @@ void print_by_gps(const GpsDesign& gps) {
     return error < max_defect_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
                                     : fmt::format("undetermined (requires {})", manoeuvre);
   };
-  say("delta-p by GPS ({}), standard errors at best (usual atmosphere; refit states those of the flight): "
-      "level {}, change with airspeed {}{}\n",
+  say("delta-p by GPS ({}), standard errors expected in a usual atmosphere (refit states those of the "
+      "flight): level {}, change with airspeed {}{}\n",
       gps.by_wind && gps.by_height ? "wind and height"
       : gps.by_wind                ? "wind"
                                    : "height",
