@@ -67,7 +67,7 @@ std::string HeightEvidence::slope_problem(const std::string& variable) const {
            fmt::format(R"(so they are in {0}; set [variables] altitude = "{1}" and [units] altitude = )"
                        R"("{2}" in the model, or correct the units attribute in the file)",
                        is_in_feet ? "feet" : "metres", variable, is_in_feet ? "ft" : "m");
-  return problem + "which is impossible in any atmosphere; check both variables";
+  return problem + "impossible in any atmosphere; check both variables";
 }
 
 HeightEvidence compare_height(const std::vector<double>& height, const std::vector<double>& pressure) {
@@ -106,7 +106,7 @@ HeightEvidence compare_height(const std::vector<double>& height, const std::vect
 HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& height,
                                const std::vector<StatedPressure>& pressures) {
   HeightEvidence closest;
-  double slope = nan;  // with the first pressure
+  double slope = nan;  // slope with the first pressure
   for (const auto& [variable, unit] : pressures) {
     try {
       const QuantityInfo& info = info_of(Quantity::static_pressure);

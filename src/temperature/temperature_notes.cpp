@@ -67,12 +67,11 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     const std::string by = with_error(error.change, error.standard_error);
     warnings.push_back(fmt::format(
         "{}; this error was removed before fitting the thermometer, {}; if a laser or a second system "
-        "confirms "
-        "the error, {}",
+        "confirms the error, {}",
         is_in_model
-            ? fmt::format("by GPS heights {} of {} is too small by {}, which changes delta-p by {:.2f} hPa",
+            ? fmt::format("{} of {} is too small by {} by GPS heights, which changes delta-p by {:.2f} hPa",
                           error.parameter, error.effect, by, error.range)
-            : fmt::format("by GPS heights delta-p lacks {1:.2f} hPa that varies like {0} ({2} = {3})",
+            : fmt::format("delta-p lacks {1:.2f} hPa by GPS heights that varies like {0} ({2} = {3})",
                           error.effect, error.range, error.parameter, by),
         size_text(error), is_in_model ? "refit first" : "add the effect (pcor add) and refit"));
   }

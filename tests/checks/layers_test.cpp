@@ -51,8 +51,8 @@ TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
 TEST(LayersCheck, ReasonForNoResultIsReported) {
   EXPECT_FALSE(check_layers({}).ran);
   CheckedFlight feet = made(0.0);
-  feet.air.height_scale_problem = "in feet";
-  EXPECT_THAT(check_layers({feet}).reason, HasSubstr("in feet"));
+  feet.air.height_scale_problem = "heights in feet";
+  EXPECT_THAT(check_layers({feet}).reason, HasSubstr("heights in feet"));
   CheckedFlight without = made(0.0);
   without.air.height.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("no unit"));

@@ -348,14 +348,14 @@ class Refusal(TemperatureTest):
         result = self.temperature(flights=(self.good,), model=model)
         error = next(each for each in result["law_errors"] if each["effect"] == "static-qp")
         self.assertAlmostEqual(error["change"], -1.0 / 80.0, delta=3.0 * error["stderr"])
-        self.assertIn("by GPS heights a2 of static-qp ", " ".join(result["warnings"]))
+        self.assertIn("a2 of static-qp is too small by ", " ".join(result["warnings"]))
         # 1 hPa is within three times the 0.3 hPa that the law states, 3 hPa are not: then as much may last.
         usual = self.temperature(flights=(self.good,))["law_error_hpa"]
         self.assertAlmostEqual(result["law_error_hpa"], usual, delta=0.01)
         beyond = self.temperature(flights=(self.good,), model=self.law("beyond", "a2", 3.0, 1.0 / 80.0))
         self.assertGreater(beyond["law_error_hpa"], 1.0)
         text = self.text_of(flights=(self.good,), model=model)
-        self.assertRegex(text, r"(?m)^Warning: by GPS heights a2 of static-qp ")
+        self.assertRegex(text, r"(?m)^Warning: a2 of static-qp is too small by ")
 
     def test_an_error_without_its_effect_in_the_law_names_no_coefficient_of_the_law(self):
         model = self.law("without", "a2", 1.0, 1.0 / 80.0)

@@ -318,7 +318,7 @@ void add_notes_on_gps(const ChosenReferences& references, bool separates_atmosph
 }
 
 std::string level_text(const LevelByGps& level) {
-  return level.is_determined() ? "by GPS delta-p needs a mean correction of " + correction_text(level)
+  return level.is_determined() ? "delta-p by GPS needs a mean correction of " + correction_text(level)
                                : "GPS does not determine the mean delta-p error on these flights; it "
                                  "requires circles or reverse headings with --reference wind";
 }
