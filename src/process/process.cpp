@@ -467,7 +467,7 @@ class Processing {
 namespace pcor {
 
 std::string format_defect(const ProcessSummary& summary) {
-  if (summary.min_defect == 0.0 && summary.max_defect == 0.0) return "delta-p zero in flight";
+  if (summary.min_defect == 0.0 && summary.max_defect == 0.0) return "delta-p zero";
   return fmt::format("delta-p {:.2f} hPa on average ({:.2f} to {:.2f}), {}", summary.mean_defect,
                      summary.min_defect, summary.max_defect,
                      is_missing(summary.defect_uncertainty)
