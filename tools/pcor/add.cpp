@@ -95,7 +95,7 @@ void print(const ModelDefinition& extended, const Extension& extension, const Ad
                                     extended.fit(i, k).fixed ? " (fixed)" : ""));
     }
     std::string formula = info ? std::string(info->formula) : effect.formula;
-    if (!effect.scaling.is_none()) formula = "(" + formula + ")";
+    if (!effect.scaling.is_none()) formula = fmt::format("({})", formula);
     for (const auto& [pressure, power] : {std::pair("p/700 hPa", effect.scaling.static_pressure),
                                           std::pair("q/70 hPa", effect.scaling.dynamic_pressure)}) {
       if (power != 0) formula += fmt::format(" * ({})^{}", pressure, power);
