@@ -11,6 +11,7 @@
 #include "model_io/covariance_blocks.hpp"
 #include "model_io/model_names.hpp"
 #include "model_io/sensor_doubt.hpp"
+#include "roles/model_inputs.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -127,6 +128,7 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
     file.uncertainty.static_defect_ratio.reset();
   }
   Provenance provenance = provenance_of(fit, loss);
+  provenance.emplace_back("pressures", ProvenanceValue{fitted_pressures(file)});
   // The temperature calibration is kept, because the pressures do not change it, and so are the added
   // effects.
   for (auto& entry : file.provenance) {

@@ -430,7 +430,7 @@ class GpsSolver {
     const bool is_fitted = nuisance_deviation_[0] < gps_nuisances.front().deviation;
     const double thermometer = change_[count_];  // negative bias, K
     const double error = std::sqrt(posterior_(count_, count_));
-    // If the flights do not determine the level, this error is too small.
+    // If the flights do not determine a combination of coefficients, this error is too small.
     if (!is_fitted && held_.cols() == 0 && std::abs(thermometer) > 2.0 * error) {
       fit.notes.push_back(fmt::format("the thermometer reads {} by {:.2f} +- {:.2f} K, by GPS",
                                       thermometer > 0.0 ? "low" : "high", std::abs(thermometer), error));

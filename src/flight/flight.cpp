@@ -17,6 +17,7 @@
 
 #include "base/phrasing.hpp"
 #include "base/quoting.hpp"
+#include "flight/called_corrected.hpp"
 #include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
 #include "flight/registration.hpp"
@@ -248,7 +249,7 @@ struct Flight::Implementation {
           is_angle(each.units) != is_angle(requested))
         continue;
       const bool is_namesake = each.name.compare(0, 2, name, 0, 2) == 0;
-      if (requested == "hPa" && strcasestr((" " + each.long_name).c_str(), " corrected") != nullptr) {
+      if (requested == "hPa" && is_called_corrected(each.long_name)) {
         if (is_namesake) corrected.push_back(each.name);
         continue;
       }
@@ -263,7 +264,7 @@ struct Flight::Implementation {
                    "[variables] of the model that names it",
                    shown, fmt::format("{}", fmt::join(alike, ", ")), role);
     const bool has_raw = std::any_of(fitting.begin(), fitting.end(), [&](const VariableInfo* each) {
-      return shared_words(words, each->long_name) > 1 && shared_words("cabin", each->long_name) == 0;
+      return shared_words(words, each->long_name) > 1 && shared_words("raw", each->long_name) > 0;
     });
     if ((!corrected.empty() && !has_raw) || (fitting.empty() && is_ratio))
       file->refuse(Error::Code::variable,

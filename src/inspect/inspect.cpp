@@ -193,7 +193,7 @@ class Look {
     } else if (has(Quantity::attack)) {
       model.model.effects.push_back(neutral_effect("static-attack"));
     }
-    model.law.source = "no law yet: all coefficients are zero until a refit";
+    model.law.source = source_without_law;
     result_.model = std::move(model);
   }
 

@@ -139,7 +139,14 @@ ModelEffect neutral_effect(std::string_view id) {
 }
 
 bool is_neutral(const ModelEffect& effect) {
-  return !effect.is_formula() && effect.parameters == neutral_effect(effect.id).parameters;
+  if (effect.is_formula() && !effect.is_surface()) return false;
+  const EffectInfo* const info = effect.is_surface() ? nullptr : effect_named(effect.id);
+  for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+    const bool is_shape = info != nullptr && info->parameters[i].shape;
+    if (!is_shape && effect.parameters[i] != (info == nullptr ? 0.0 : info->parameters[i].neutral))
+      return false;
+  }
+  return true;
 }
 
 ModelEffect surface_effect(const std::string& id, const std::array<SurfaceAxis, 2>& axes) {

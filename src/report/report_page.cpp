@@ -188,7 +188,7 @@ std::string head(const Report& report) {
     html += R"(<section class="next" aria-label="Next step">)";
     std::istringstream lines(report.next);
     for (std::string step; std::getline(lines, step);) {
-      const std::size_t colon = step.rfind(": ");
+      const std::size_t colon = step.rfind(": ", step.find('\''));  // a quoted name may have a colon
       const bool has_command = colon != std::string::npos && (step.find("pcor", colon) != std::string::npos ||
                                                               step.compare(colon, 8, ": ncdump") == 0);
       const std::size_t end = has_command ? colon + 1 : step.size();

@@ -12,6 +12,7 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/base/utc.hpp>
 #include "base/quoting.hpp"
+#include "flight/called_corrected.hpp"
 #include "flight/registration.hpp"
 #include "model_io/model_names.hpp"
 #include "roles/plausible_pressure.hpp"
@@ -72,11 +73,25 @@ void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& note
                         name, variable.long_name.empty() ? "air_temperature" : variable.long_name));
 }
 
-/// Whether the model has a law that was not fitted to its variables.
+/// Whether the model has a law of delta-p for other pressures: it was neither fitted to those of the model,
+/// nor is it the first fit of a model without law.
 bool has_foreign_law(const ModelDefinition& file) {
   const std::vector<ModelEffect>& effects = file.model.effects;
-  return find_entry<ProvenanceList>(file.provenance, "flights") == nullptr &&
-         !std::all_of(effects.begin(), effects.end(), is_neutral);
+  const bool has_law = std::any_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
+    const EffectInfo* const info = effect_named(effect.id);
+    return (info == nullptr ? effect.location : info->location) == EffectLocation::static_defect &&
+           !is_neutral(effect);
+  });
+  if (const auto* const fitted = find_entry<ProvenanceList>(file.provenance, "pressures"))
+    return has_law && *fitted != fitted_pressures(file);
+  std::string source = file.law.source;
+  if (const auto* const before = find_entry<ProvenanceList>(file.provenance, "before");
+      before != nullptr && !before->empty()) {
+    const auto* const first = std::get_if<Provenance>(&before->front());
+    const auto* const text = first == nullptr ? nullptr : find_entry<std::string>(*first, "source");
+    if (text != nullptr) source = *text;
+  }
+  return has_law && source != source_without_law;
 }
 
 /// Warns if the file calls a pressure of the model corrected, or that of the cabin.
@@ -89,7 +104,7 @@ void note_wrong_pressure(const Flight& flight, const ModelDefinition& file, Note
     const auto says = [&words](const char* word) {
       return std::find(words.begin(), words.end(), word) != words.end();
     };
-    if (!says("cabin") && (!says("corrected") || says("not") || !has_foreign_law(file))) continue;
+    if (!says("cabin") && !(is_called_corrected(described) && has_foreign_law(file))) continue;
     warn_once(notes,
               fmt::format("name another variable than {} as {} in [variables]: the file describes it as "
                           "'{}'{}",
@@ -104,6 +119,10 @@ bool are_of_two_aircraft(const ModelDefinition& file, const Flight& flight) {
 }
 
 }  // namespace
+
+ProvenanceList fitted_pressures(const ModelDefinition& file) {
+  return {file.variable_of(Quantity::static_pressure), file.variable_of(Quantity::dynamic_pressure)};
+}
 
 void note_other_units(const Flight& flight, const ModelDefinition& file, Notes& notes) {
   const VariableNaming& family = family_of(file, flight);

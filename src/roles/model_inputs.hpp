@@ -10,6 +10,12 @@
 
 namespace pcor::internal {
 
+/// Source of a model that `inspect_flight` makes; its fits are to the variables of the flight.
+inline constexpr const char* source_without_law = "no law yet: all coefficients are zero until a refit";
+
+/// The pressures of a model, as a refit writes them to its provenance.
+ProvenanceList fitted_pressures(const ModelDefinition& file);
+
 /// A variable of a flight that a model reads, and the quantity that it is.
 struct ModelInput {
   std::string variable;

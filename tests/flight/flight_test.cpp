@@ -534,6 +534,7 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
     maker.series("RSTB1", "degC", {1});
     maker.series("COUNTS", "1", {1});
     maker.text(maker.series("PSXC", "hPa", {1}), "long_name", "Corrected Static Pressure, Reference");
+    maker.text(maker.series("INPS2", "hPa", {1}), "long_name", "Static Pressure, Sample Plane");
     for (const char* name : {"TTRR", "TTRL", "TTWH"})
       maker.text(maker.series(name, "C", {1}), "long_name", "Total Temperature");
   });

@@ -625,6 +625,20 @@ TEST(ModelDefinition, DefaultBoundsAreThoseOfTheCatalogue) {
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
 
+// Any shape of an effect without size is neutral.
+TEST(ModelDefinition, AnEffectIsNeutralIfItChangesNothing) {
+  ModelEffect step = neutral_effect("aircraft-step");
+  step.parameters[1] = 4000.0;  // since
+  EXPECT_TRUE(is_neutral(step));
+  step.parameters[0] = 0.1;
+  EXPECT_FALSE(is_neutral(step));
+  ModelEffect surface = surface_effect(
+      "static-surface", {{{Quantity::attack_ratio, -0.1, 0.3, 5}, {Quantity::mach, 0.2, 0.5, 4}}});
+  EXPECT_TRUE(is_neutral(surface));
+  surface.parameters[3] = 0.001;
+  EXPECT_FALSE(is_neutral(surface));
+}
+
 TEST(ModelDefinition, ThirdLamsApproachReadsBothTemperatures) {
   const std::string both = "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n";
   const ModelDefinition file = parsed(minimum + both + "[lams]\napproach = 3\n");

@@ -87,6 +87,7 @@ TEST(Reference, PressureThatIsNotStaticIsRefused) {
                "Raw Static Pressure");
     maker.text(maker.series("QCR", "hPa", std::vector<double>(50, 70.0)), "long_name",
                "Raw Dynamic Pressure, Radome");
+    maker.text(maker.series("QCA", "hPa", std::vector<double>(50, 70.0)), "long_name", "Pitot air pressure");
     maker.text(maker.series("QC", "hPa", std::vector<double>(50, 250.0)), "long_name",
                "Ambient pressure, quality controlled");
   }
@@ -95,7 +96,7 @@ TEST(Reference, PressureThatIsNotStaticIsRefused) {
   const auto read = [&](const std::string& variable) {
     return read_reference("pressure:" + variable, without_laser())->read(flight, {}, notes);
   };
-  for (const char* const variable : {"QCF", "PCAB", "QCR"}) {
+  for (const char* const variable : {"QCF", "PCAB", "QCR", "QCA"}) {
     EXPECT_THAT(test::error_of([&] { read(variable); }), test::IsError(Error::Code::variable, variable));
   }
   read("QC");

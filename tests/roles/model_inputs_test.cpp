@@ -93,8 +93,15 @@ TEST(ModelInputs, CorrectedOrCabinPressureGivesAWarning) {
   };
   EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01), 1U);
   EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.0), 0U);
-  const Provenance refit{{"flights", ProvenanceList{std::string("flight.nc")}}};
-  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01, refit), 0U);
+  const auto fitted_to = [](const char* pressure) {
+    return Provenance{{"pressures", ProvenanceList{std::string(pressure), std::string("QCF")}}};
+  };
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01, fitted_to("P")), 0U);
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01, fitted_to("PSFD")), 1U)
+      << "the user exchanged the variables after the fit";
+  const Provenance began_without_law{
+      {"before", ProvenanceList{Provenance{{"source", std::string(source_without_law)}}}}};
+  EXPECT_EQ(warnings("Corrected Static Pressure, Fuselage Digital", 0.01, began_without_law), 0U);
   EXPECT_EQ(warnings("Static Pressure, not corrected for position error", 0.01), 0U);
   EXPECT_EQ(warnings("Interior Cabin Static Pressure", 0.0), 1U);
   EXPECT_EQ(warnings("Raw Static Pressure, Fuselage", 0.01), 0U);

@@ -102,17 +102,18 @@ class PressureReference final : public Reference {
       return std::nullopt;
     };
     using Q = Quantity;
-    const bool may_be_static = candidate(Q::static_pressure).has_value();
+    const std::optional<RoleCandidate> as_static = candidate(Q::static_pressure);
+    const double required = as_static ? std::max(sure_score, as_static->score + clear_lead) : sure_score;
     for (const Quantity role :
          {Q::dynamic_pressure, Q::radome_dynamic_pressure, Q::attack_differential_pressure,
           Q::sideslip_differential_pressure, Q::cabin_pressure}) {
-      if (may_be_static) break;
       const std::optional<RoleCandidate> other = candidate(role);
-      if (!other || other->score < sure_score) continue;
-      throw Error(Error::Code::variable,
-                  fmt::format("{}: {}, the reference, is a {}, not a static pressure: {}; give another with "
-                              "--reference",
-                              flight.path().string(), variable_, info_of(role).name, other->why));
+      if (!other || other->score < required) continue;
+      throw Error(
+          Error::Code::variable,
+          fmt::format("{}: {}, the reference, has the role {}, not static_pressure: {}; give another with "
+                      "--reference",
+                      flight.path().string(), variable_, info_of(role).name, other->why));
     }
     const std::string& long_name = flight.variable(variable_).long_name;
     const std::vector<std::string> words = plain_words(long_name);
