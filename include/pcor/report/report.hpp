@@ -288,7 +288,7 @@ struct Report {
   std::string title;  ///< the result in one sentence
   std::string subtitle;
   std::vector<std::string> summary;  ///< sentences; the page folds those after the second
-  std::string next;                  ///< "To apply it: pcor process ...", or a sentence, in each line
+  std::string next;  ///< "To apply it: pcor process ...", or a sentence, in each line; may be empty
   std::vector<std::pair<std::string, std::string>>
       info;                                ///< name and value, e.g. "Model"; folded on the page
   std::vector<double> time;                ///< sample times, s since 1970 UTC

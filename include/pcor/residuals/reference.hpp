@@ -88,7 +88,8 @@ std::shared_ptr<const Reference> static_system_reference(ModelDefinition system)
 
 /// Variable that is a static pressure: from the avionics, or already corrected.
 /// @param of_model variable of the model's static pressure; the flight gets a warning if the reference is
-/// computed from it
+/// computed from it or described as raw, and an error if it is described as another pressure, such as that of
+/// the cabin. If empty, `variable` is not examined.
 std::shared_ptr<const Reference> pressure_reference(std::string variable, std::string of_model = "");
 
 /// Total pressure of another pair of the aircraft, corrected by its model: the residual is (p + q) of the
