@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <pcor/effects/catalogue.hpp>
-
 #include "model_io/sensor_doubt.hpp"
 
 namespace pcor::internal {
@@ -38,11 +36,6 @@ Eigen::MatrixXd stated_covariance(const ModelDefinition& model) {
   const std::vector<double> stated = stated_uncertainty(model).covariance;
   const auto size = static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(stated.size()))));
   return Eigen::Map<const Eigen::MatrixXd>(stated.data(), size, size);
-}
-
-EffectLocation location_of(const ModelEffect& effect) {
-  if (effect.is_surface()) return EffectLocation::static_defect;
-  return effect.is_formula() ? effect.location : effect_named(effect.id)->location;
 }
 
 }  // namespace pcor::internal

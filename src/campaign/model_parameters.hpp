@@ -25,7 +25,4 @@ std::vector<std::size_t> free_parameters(const ModelDefinition& model);
 /// if not stated.
 Eigen::MatrixXd stated_covariance(const ModelDefinition& model);
 
-/// Location of an effect.
-EffectLocation location_of(const ModelEffect& effect);
-
 }  // namespace pcor::internal

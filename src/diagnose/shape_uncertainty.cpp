@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <pcor/effects/catalogue.hpp>
-#include "campaign/model_parameters.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {

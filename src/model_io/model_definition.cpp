@@ -138,6 +138,11 @@ ModelEffect neutral_effect(std::string_view id) {
   return effect;
 }
 
+EffectLocation location_of(const ModelEffect& effect) {
+  if (effect.is_surface()) return EffectLocation::static_defect;
+  return effect.is_formula() ? effect.location : effect_named(effect.id)->location;
+}
+
 bool is_neutral(const ModelEffect& effect) {
   if (effect.is_formula() && !effect.is_surface()) return false;
   const EffectInfo* const info = effect.is_surface() ? nullptr : effect_named(effect.id);

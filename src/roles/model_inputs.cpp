@@ -78,9 +78,7 @@ void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& note
 bool has_foreign_law(const ModelDefinition& file) {
   const std::vector<ModelEffect>& effects = file.model.effects;
   const bool has_law = std::any_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
-    const EffectInfo* const info = effect_named(effect.id);
-    return (info == nullptr ? effect.location : info->location) == EffectLocation::static_defect &&
-           !is_neutral(effect);
+    return location_of(effect) == EffectLocation::static_defect && !is_neutral(effect);
   });
   if (const auto* const fitted = find_entry<ProvenanceList>(file.provenance, "pressures"))
     return has_law && *fitted != fitted_pressures(file);

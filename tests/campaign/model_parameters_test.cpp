@@ -7,18 +7,22 @@
 namespace pcor::internal {
 namespace {
 
-// A surface is not in the catalogue: its location was read through a null pointer.
-TEST(ModelParameters, EveryKindOfEffectHasALocation) {
+// Coefficients of a surface and fixed parameters keep their numbers but are not free.
+TEST(ModelParameters, NumbersCountAllEffectsAndFreeOnesOmitSurfacesAndFixedParameters) {
+  ModelDefinition model;
   const ModelEffect surface = surface_effect(
       "static-surface",
-      {SurfaceAxis{Quantity::mach, 0.2, 0.6, 4}, SurfaceAxis{Quantity::attack_ratio, -0.3, 0.1, 4}});
-  EXPECT_EQ(location_of(surface), EffectLocation::static_defect);
-  EXPECT_EQ(location_of(neutral_effect("qcf-gain")), EffectLocation::dynamic_transducer);
-  ModelEffect formula;
-  formula.id = "mine";
-  formula.formula = "k * altitude";
-  formula.location = EffectLocation::pitot;
-  EXPECT_EQ(location_of(formula), EffectLocation::pitot);
+      {SurfaceAxis{Quantity::mach, 0.2, 0.6, 4}, SurfaceAxis{Quantity::attack_ratio, -0.3, 0.1, 5}});
+  model.model.effects = {neutral_effect("qcf-gain"), surface, neutral_effect("aircraft-step")};
+  const std::size_t gain = model.model.effects[0].parameters.size();
+  EXPECT_EQ(first_parameter_of(model, "qcf-gain"), 0u);
+  EXPECT_EQ(first_parameter_of(model, "static-surface"), gain);
+  EXPECT_EQ(first_parameter_of(model, "aircraft-step"), gain + 20);
+  EXPECT_EQ(first_parameter_of(model, "static-mach"), std::nullopt);
+  EXPECT_EQ(parameter_count(model.model), gain + 20 + model.model.effects[2].parameters.size());
+  model.fits = {{}, {}, EffectFit(2)};
+  model.fits[2][1].fixed = true;
+  EXPECT_EQ(free_parameters(model), (std::vector<std::size_t>{0, gain + 20}));
 }
 
 }  // namespace

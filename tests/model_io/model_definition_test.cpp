@@ -625,6 +625,20 @@ TEST(ModelDefinition, DefaultBoundsAreThoseOfTheCatalogue) {
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
 
+// A surface is not in the catalogue: its location was read through a null pointer.
+TEST(ModelDefinition, EveryKindOfEffectHasALocation) {
+  const ModelEffect surface = surface_effect(
+      "static-surface",
+      {SurfaceAxis{Quantity::mach, 0.2, 0.6, 4}, SurfaceAxis{Quantity::attack_ratio, -0.3, 0.1, 4}});
+  EXPECT_EQ(location_of(surface), EffectLocation::static_defect);
+  EXPECT_EQ(location_of(neutral_effect("qcf-gain")), EffectLocation::dynamic_transducer);
+  ModelEffect formula;
+  formula.id = "mine";
+  formula.formula = "k * altitude";
+  formula.location = EffectLocation::pitot;
+  EXPECT_EQ(location_of(formula), EffectLocation::pitot);
+}
+
 // Any shape of an effect without size is neutral.
 TEST(ModelDefinition, AnEffectIsNeutralIfItChangesNothing) {
   ModelEffect step = neutral_effect("aircraft-step");

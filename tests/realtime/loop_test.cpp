@@ -342,6 +342,10 @@ TEST(Loop, ExtendedFlapsAreOutsideTheDomain) {
   ranged.domain = {{"flaps", 0.0, 50.0}};
   EXPECT_FALSE(is_flagged(ranged, 40.0));
   EXPECT_FALSE(is_flagged(Model{}, 40.0)) << "changes nothing";
+  Model step;
+  step.effects.push_back({"aircraft-step", {0.0, 4000.0}});
+  recorded[Quantity::date] = 5000.0;
+  EXPECT_FALSE(is_flagged(step, 40.0)) << "a step of zero changes nothing, whatever its date";
 }
 
 TEST(LoopOrder, CircularDependencyIsRefusedAndReported) {

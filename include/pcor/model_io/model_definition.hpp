@@ -147,7 +147,11 @@ std::vector<std::string> parameter_names(const ModelEffect& effect);
 /// unknown.
 ModelEffect neutral_effect(std::string_view id);
 
-/// Whether an effect of the catalogue changes nothing: its coefficients are neutral.
+/// Where an effect acts. @param effect a formula, a surface or an effect of the catalogue
+EffectLocation location_of(const ModelEffect& effect);
+
+/// Whether an effect of the catalogue or a surface changes nothing: all its coefficients are neutral,
+/// whatever its shape parameters. False for a formula.
 bool is_neutral(const ModelEffect& effect);
 
 /// Surface effect with all coefficients zero, to be fitted. @param axes each must be valid

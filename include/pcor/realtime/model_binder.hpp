@@ -241,7 +241,8 @@ class ModelBinder {
   static bool is_neutral(const Term& term, const ModelEffect& effect) {
     if (term.effect >= catalogue_size) return false;
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      if (effect.parameters[i] != effect_info[term.effect].parameters[i].neutral) return false;
+      const auto& parameter = effect_info[term.effect].parameters[i];
+      if (!parameter.shape && effect.parameters[i] != parameter.neutral) return false;
     }
     return true;
   }
