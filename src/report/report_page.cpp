@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdlib>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -183,18 +182,12 @@ std::string head(const Report& report) {
                      element("p", report.subtitle, R"( class="subtitle")") + "</header>\n";
   if (!report.summary.empty())
     html += R"(<section class="summary" aria-label="Summary">)" + summary(report.summary) + "</section>\n";
-  // A command follows its purpose: "To apply it: pcor process ...". Each line is a step.
   if (!report.next.empty()) {
     html += R"(<section class="next" aria-label="Next step">)";
-    std::istringstream lines(report.next);
-    for (std::string step; std::getline(lines, step);) {
-      const std::size_t colon = step.rfind(": ", step.find('\''));  // a quoted name may have a colon
-      const bool has_command = colon != std::string::npos && (step.find("pcor", colon) != std::string::npos ||
-                                                              step.compare(colon, 8, ": ncdump") == 0);
-      const std::size_t end = has_command ? colon + 1 : step.size();
-      html += fmt::format(
-          "<p>{}{}</p>", typeset(step.substr(0, end)),
-          end == step.size() ? "" : fmt::format(" <code>{}</code>", escaped(step.substr(end + 1))));
+    for (const NextStep& step : report.next) {
+      const std::string command =
+          step.command.empty() ? "" : fmt::format(": <code>{}</code>", escaped(step.command));
+      html += fmt::format("<p>{}{}</p>", typeset(step.text), command);
     }
     html += "</section>\n";
   }

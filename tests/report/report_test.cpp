@@ -184,26 +184,22 @@ TEST(Report, LongTableIsFolded) {
 TEST(Report, UncertaintiesUseThePlusMinusSign) {
   Report report = report_of(3, 1);
   report.summary = {"1.0 +- 0.1 hPa"};
-  report.next = "To apply it: pcor add --formula 'k +-1'";
+  report.next = {{"To apply it", "pcor add --formula 'k +-1'"}};
   const std::string html = report_html(report);
   EXPECT_THAT(html, HasSubstr("<li>1.0 ± 0.1 hPa</li>"));
   EXPECT_THAT(html, HasSubstr("<code>pcor add --formula &#39;k +-1&#39;</code>"));
 }
 
-TEST(Report, EachLineOfTheNextStepHasItsCommand) {
+// A program that is called by another name is a command, too.
+TEST(Report, NextStepsAreSentencesWithOrWithoutACommand) {
   Report report = report_of(3, 1);
-  report.next = "First edit a.toml. Then refit: pcor refit a.nc\nTo look at it: ncdump -v PSXC b.nc";
+  report.next = {{"First edit a.toml. Then refit", "/opt/correct refit 'a: b.nc'"},
+                 {"It needs 0.0 +- 0.2 hPa: up to 0.5 hPa. To test it, give another flight"}};
   const std::string html = report_html(report);
-  for (const char* const step : {"<p>First edit a.toml. Then refit: <code>pcor refit a.nc</code></p>",
-                                 "<p>To look at it: <code>ncdump -v PSXC b.nc</code></p>"})
+  for (const char* const step :
+       {"<p>First edit a.toml. Then refit: <code>/opt/correct refit &#39;a: b.nc&#39;</code></p>",
+        "<p>It needs 0.0 ± 0.2 hPa: up to 0.5 hPa. To test it, give another flight</p>"})
     EXPECT_THAT(html, HasSubstr(step));
-}
-
-TEST(Report, ResultWithAColonIsNoCommand) {
-  Report report = report_of(3, 1);
-  report.next = "It needs 0.0 +- 0.2 hPa: up to 0.5 hPa. To test it, give another flight";
-  EXPECT_THAT(report_html(report),
-              HasSubstr("<p>It needs 0.0 ± 0.2 hPa: up to 0.5 hPa. To test it, give another flight</p>"));
 }
 
 TEST(Report, RefusesAnUnknownColumn) {

@@ -108,9 +108,9 @@ std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
 }
 
 /// Suggested next step: first for a fault that a refit cannot correct, then for the temperature, then for the
-/// model. Empty if no step remains.
-std::string next_step(const Checks& checks, const CheckArguments& options,
-                      const std::optional<ModelDefinition>& model) {
+/// model. Empty if none remains.
+std::vector<NextStep> next_steps(const Checks& checks, const CheckArguments& options,
+                                 const std::optional<ModelDefinition>& model) {
   const auto fails = [&](const std::string& name) {
     return std::any_of(checks.results.begin(), checks.results.end(), [&](const CheckResult& result) {
       return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
@@ -118,32 +118,34 @@ std::string next_step(const Checks& checks, const CheckArguments& options,
   };
   const std::string second =
       options.reference.empty() ? "" : " --reference " + reference_argument(options.reference);
-  const std::string pictures = options.common.report.empty()
-                                   ? fmt::format("To see the pictures: {} check {}{} --report check.html",
-                                                 program(), command_line(options), second)
-                                   : "";
+  std::vector<NextStep> pictures;
+  if (options.common.report.empty())
+    pictures.push_back({"To see the pictures", fmt::format("{} check {}{} --report check.html", program(),
+                                                           command_line(options), second)});
   if (fails("total-pressure")) {
-    return "A transducer, a pitot or a line of one system is wrong. No term of the model can correct it, "
-           "because static defects cancel in the total pressure." +
-           (pictures.empty() ? "" : "\n" + pictures);
+    pictures.insert(pictures.begin(),
+                    {"A transducer, a pitot or a line of one system is wrong. No term of the model can "
+                     "correct it, because static defects cancel in the total pressure."});
+    return pictures;
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
   const std::vector<std::filesystem::path> inputs = inputs_of(options);
   if (model && (fails("layers") || fails("lams-temperature"))) {
-    return fmt::format("To find the thermometer's error by the height: {} temperature {} -o {}", program(),
-                       command_line(options), output_file("calibrated.toml", inputs));
+    return {{"To find the thermometer's error by the height",
+             fmt::format("{} temperature {} -o {}", program(), command_line(options),
+                         output_file("calibrated.toml", inputs))}};
   }
   const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   // A total pressure does not determine the static defect.
   const bool has_second_system = options.reference.rfind(second_system, 0) == 0;
   if (inconsistent > 0 && model && (has_laser || has_second_system)) {
-    return fmt::format("To refit the model and find missing effects: {} improve {}{} -o {}", program(),
-                       command_line(options), has_laser ? "" : second, output_file("improved.toml", inputs));
+    return {{"To refit the model and find missing effects",
+             fmt::format("{} improve {}{} -o {}", program(), command_line(options), has_laser ? "" : second,
+                         output_file("improved.toml", inputs))}};
   }
   if (inconsistent == 0 && model && count_of(checks, CheckVerdict::consistent) > 0) {
-    return fmt::format(
-        "To apply the model: {}",
-        process_command(options.flights.flights, *model, options.model, options.flights.timestamp_alignment));
+    return {{"To apply the model", process_command(options.flights.flights, *model, options.model,
+                                                   options.flights.timestamp_alignment)}};
   }
   return pictures;
 }
@@ -191,7 +193,7 @@ void print(const Checks& checks, const CheckArguments& options, const std::optio
   say_notes(checks.notes);
   say_written({options.common.report, options.table, options.common.json});
   say("{}.\n", summary_of(checks));
-  if (const std::string next = next_step(checks, options, model); !next.empty()) say("{}\n", next);
+  say_next(next_steps(checks, options, model));
 }
 
 /// Row for each check of each flight, which is checked separately.
@@ -247,7 +249,7 @@ void run(const CheckArguments& options) {
   OutputTransaction together;
   if (!options.common.report.empty())
     write_report_of_run(check_report(checks),
-                        {models_of(options), options.flights.flights, {}, next_step(checks, options, model)},
+                        {models_of(options), options.flights.flights, {}, next_steps(checks, options, model)},
                         options.common);
   if (table) table->write(options.table);
   json.write(checks);

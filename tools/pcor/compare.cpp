@@ -241,7 +241,7 @@ void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& mo
   for (const std::filesystem::path& file : residual_files(options)) written.push_back(file.string());
   written.insert(written.end(), {options.common.report, options.table, options.common.json});
   say_written(written);
-  say("{}\n", next_step(result, models, options));
+  say_next(next_steps(result, models, options));
 }
 
 /// Adds the references of a model to the references of earlier models, without repetition.
@@ -388,7 +388,7 @@ void run(const CompareArguments& options) {
     if (levels.size() == 1 && comparison.models.front().is_by_gps())
       report.title = "Mean error of the model: " + level_text(result.levels.front().second);
     write_report_of_run(std::move(report),
-                        {options.models, options.comparison.flights, {}, next_step(result, models, options)},
+                        {options.models, options.comparison.flights, {}, next_steps(result, models, options)},
                         options.common);
   }
   if (!options.table.empty()) write_flight_table(comparison, options.table);

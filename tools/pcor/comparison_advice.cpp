@@ -81,18 +81,18 @@ Support evidence_for(const ModelComparison& worst, const ModelDefinition& model,
   return is_close_to_noise(worst) ? Support::supported : Support::refuted;
 }
 
-/// Composes the text for the best model.
-class NextStep {
+/// Composes the steps for the best model.
+class Advice {
  public:
-  NextStep(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
-           const CompareArguments& options)
+  Advice(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
+         const CompareArguments& options)
       : result_(result),
         models_(models),
         options_(options),
         best_(best_model()),
         compared_(compared(best_)) {}
 
-  std::string text() const {
+  std::vector<NextStep> steps() const {
     if (best_.is_circular && result_.comparison.further.empty()) return not_tested();
     switch (support_of(best_)) {
       case Support::supported:
@@ -158,42 +158,43 @@ class NextStep {
     return std::abs(level.missing) + 2.0 * level.standard_error;
   }
 
-  std::string not_tested() const {
-    return fmt::format(
+  std::vector<NextStep> not_tested() const {
+    return {{fmt::format(
         "{} reads the pressures of {}, so the residual does not test it; give another --reference",
-        best_.reference, best_.name);
+        best_.reference, best_.name)}};
   }
 
-  std::string to_apply() const {
+  std::vector<NextStep> to_apply() const {
     const std::string ratio = largest_ratio();
-    return fmt::format("{}{}. To apply it: {}", choice(),
-                       by_gps_ ? fmt::format("By GPS {} {}, which with two standard errors is within {} hPa",
-                                             best_.name, correction(), max_model_error)
-                               : fmt::format("The residual of {} is close to the noise{}", best_.name,
-                                             ratio.empty() ? "" : ", at most " + ratio),
-                       process_command(options_.comparison.flights, compared_.model, model_option(),
-                                       options_.comparison.timestamp_alignment));
+    return {
+        {fmt::format("{}{}. To apply it", choice(),
+                     by_gps_ ? fmt::format("By GPS {} {}, which with two standard errors is within {} hPa",
+                                           best_.name, correction(), max_model_error)
+                             : fmt::format("The residual of {} is close to the noise{}", best_.name,
+                                           ratio.empty() ? "" : ", at most " + ratio)),
+         process_command(options_.comparison.flights, compared_.model, model_option(),
+                         options_.comparison.timestamp_alignment)}};
   }
 
-  std::string to_test() const {
+  std::vector<NextStep> to_test() const {
     const bool is_single = models_.size() == 1;
     const std::string found = correction();
-    return fmt::format(
+    return {{fmt::format(
         "{}GPS does not decide whether {} is right. {}To test it, give flights with circles or reverse "
         "headings and --reference wind, or another --reference",
         choice(), is_single ? best_.name : "one of the models",
         found.empty()
             ? ""
             : fmt::format("{} {}: with two standard errors up to {:.2f} hPa, above the tolerance of {} hPa. ",
-                          is_single ? "It" : best_.name, found, bound(), max_model_error));
+                          is_single ? "It" : best_.name, found, bound(), max_model_error))}};
   }
 
-  std::string to_correct() const {
+  std::vector<NextStep> to_correct() const {
     if (by_gps_ && compared_.model.model.effects.empty()) {
-      return fmt::format(
+      return {{fmt::format(
           "GPS does not support {}, which has no coefficient to refit; add an effect, or give another "
           "--reference",
-          best_.name);
+          best_.name)}};
     }
     if (!(best_.all.rms > 0.0)) return not_tested();
     const bool is_worst_close = is_close_to_noise(worst_);
@@ -206,34 +207,36 @@ class NextStep {
     else if (!is_worst_close && !ratio.empty())
       reason += fmt::format("The rms is {}. ", ratio);
     if (is_beyond_refit && is_close_to_noise(best_)) {
-      return fmt::format("{}A refit does not change it. To find the error: {} diagnose {}", reason, program(),
-                         arguments());
+      return {{reason + "A refit does not change it. To find the error",
+               fmt::format("{} diagnose {}", program(), arguments())}};
     }
-    return reason + to_refit(!reason.empty());
+    std::vector<NextStep> steps = to_refit(!reason.empty());
+    steps.front().text.insert(0, reason);
+    return steps;
   }
 
   std::string arguments() const {
     return fmt::format("{} -m {}", advised_command_line(options_.comparison), model_argument(model_option()));
   }
 
-  std::string to_refit(bool has_reason) const {
+  std::vector<NextStep> to_refit(bool has_reason) const {
     const std::vector<std::string> undetermined = undetermined_effects(compared_);
     if (!undetermined.empty() && undetermined.size() == compared_.model.model.effects.size()) {
-      return fmt::format(
+      return {{fmt::format(
           "Static defects cancel in the total pressure, so a refit to it cannot determine {}; compare it "
           "with a static pressure, for example --reference static:OTHER.toml",
-          best_.name);
+          best_.name)}};
     }
     const std::vector<std::filesystem::path> inputs = input_files(options_.comparison, options_.models);
     std::string refit =
         fmt::format("{} refit {} -o {}", program(), arguments(), output_file("fitted.toml", inputs));
     for (const std::string& id : undetermined) refit += " --fix " + shell_quote(id);
     if (is_verbose() && result_.comparison.total_pressure && result_.comparison.is_static_pressure) {
-      return fmt::format(
-          "To refit its coefficients: {0}\nTo refit both systems together: {0} --refit-reference {1}", refit,
-          output_file("fitted-reference.toml", inputs));
+      return {{"To refit its coefficients", refit},
+              {"To refit both systems together",
+               fmt::format("{} --refit-reference {}", refit, output_file("fitted-reference.toml", inputs))}};
     }
-    return fmt::format("To refit {}: {}", by_gps_ && has_reason ? best_.name : "its coefficients", refit);
+    return {{fmt::format("To refit {}", by_gps_ && has_reason ? best_.name : "its coefficients"), refit}};
   }
 
   const ComparisonWithGps& result_;
@@ -253,9 +256,9 @@ std::string correction_text(const LevelByGps& level) {
 
 bool is_close_to_noise(const ModelComparison& worst) { return worst.noise_ratio() < 1.15; }
 
-std::string next_step(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
-                      const CompareArguments& options) {
-  return NextStep(result, models, options).text();
+std::vector<NextStep> next_steps(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
+                                 const CompareArguments& options) {
+  return Advice(result, models, options).steps();
 }
 
 }  // namespace pcor::tool

@@ -8,6 +8,7 @@
 #include <pcor/compare/compare.hpp>
 #include <pcor/fit/refit.hpp>
 #include "comparison.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 
@@ -58,7 +59,7 @@ void describe(const ComparisonWithGps& self, Field& field) {
 
 /// Next step: a model is applied or refitted, that with the smallest rms. An rms by GPS contains gusts: there
 /// it is the first model with the best support.
-std::string next_step(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
-                      const CompareArguments& options);
+std::vector<NextStep> next_steps(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
+                                 const CompareArguments& options);
 
 }  // namespace pcor::tool

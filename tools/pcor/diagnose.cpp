@@ -134,29 +134,28 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   print_list("not testable", not_testable, all);
 }
 
-/// Command that adds the findings, or the empirical term, and fits; otherwise the command that repeats this
-/// for findings that one command cannot add.
-std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diagnosed,
-                         const DiagnoseArguments& options) {
+/// The command that adds the findings, or the empirical term, and fits; otherwise the command that repeats
+/// this for findings that one command cannot add.
+std::vector<NextStep> next_steps(const Diagnosis& diagnosis, const ModelDefinition& diagnosed,
+                                 const DiagnoseArguments& options) {
   const std::string flights = advised_command_line(options.comparison) + command_line(options.fit);
   const std::string model = model_argument(options.model);
   const std::string compare =
       fmt::format("{} compare {} -m {}", program(), advised_command_line(options.comparison), model);
   const auto [detectable, tested] = detectable_at_usual_size(diagnosis);
   if (diagnosis.verdict == Verdict::silent && tested > 0 && detectable == 0)
-    return "To test the model, add flights or a further reference. To see the residual: " + compare;
+    return {{"To test the model, add flights or a further reference. To see the residual", compare}};
   // A refit that decreases the rms by less than this share does not matter.
   constexpr double negligible = 0.02;
   if (diagnosis.verdict == Verdict::silent && diagnosis.is_refitted &&
       diagnosis.residual_rms_held_out < (1.0 - negligible) * diagnosis.rms_given) {
-    return fmt::format(
-        "No missing effect was detected, but a refit decreases the rms on held-out parts: {} refit {} -m {} "
-        "-o {}",
-        program(), flights, model, output_file("fitted.toml", inputs_of(options)));
+    return {{"No missing effect was detected, but a refit decreases the rms on held-out parts",
+             fmt::format("{} refit {} -m {} -o {}", program(), flights, model,
+                         output_file("fitted.toml", inputs_of(options)))}};
   }
   if (diagnosis.verdict == Verdict::silent) {
-    return "To apply the model: " + process_command(options.comparison.flights, diagnosed, options.model,
-                                                    options.comparison.timestamp_alignment);
+    return {{"To apply the model", process_command(options.comparison.flights, diagnosed, options.model,
+                                                   options.comparison.timestamp_alignment)}};
   }
   const std::vector<std::filesystem::path> inputs = inputs_of(options);
   const std::string best = output_file("best.toml", inputs);
@@ -175,57 +174,56 @@ std::string next_command(const Diagnosis& diagnosis, const ModelDefinition& diag
     const bool has_third = std::any_of(given.begin(), given.end(), [](const std::string& reference) {
       return reference == "lams" || reference == "wind" || reference == "height";
     });
-    return fmt::format("{}; the model is unchanged. To see it: {}",
-                       std::none_of(findings.begin(), findings.end(), may_be_of_model)
-                           ? "The effect belongs to the reference system"
-                       : has_third
-                           ? "The references do not show which of the two systems has the error"
-                           : "The difference of two systems does not show which of them has the error: a "
-                             "further reference does (--reference lams, wind or height)",
-                       compare);
+    return {{fmt::format("{}; the model is unchanged. To see it",
+                         std::none_of(findings.begin(), findings.end(), may_be_of_model)
+                             ? "The effect belongs to the reference system"
+                         : has_third
+                             ? "The references do not show which of the two systems has the error"
+                             : "The difference of two systems does not show which of them has the error: a "
+                               "further reference does (--reference lams, wind or height)"),
+             compare}};
   }
   const bool sure = (diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous) &&
                     std::all_of(findings.begin(), findings.end(),
                                 [](const Finding& finding) { return finding.rival.empty(); });
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
-    std::string without;
+    std::vector<NextStep> steps;
     std::string add = program() + " add";
     for (const Finding& finding : findings) {
       add += " " + shell_quote(argument_of(finding.effect));
       if (!finding.is_alike) continue;
-      without += fmt::format(
-          "{} was found {}, which a model file cannot represent: it is added without this part.\n",
-          finding.id(), finding.shape);
+      steps.push_back(
+          {fmt::format("{} was found {}, which a model file cannot represent: it is added without this part.",
+                       finding.id(), finding.shape)});
     }
-    return fmt::format("{}To add {} and fit: {}{}", without, findings.size() == 1 ? "it" : "them", add,
-                       and_fit);
+    steps.push_back({fmt::format("To add {} and fit", findings.size() == 1 ? "it" : "them"), add + and_fit});
+    return steps;
   }
   if (sure && findings.size() == 1 && !findings[0].may_be_of_reference() &&
       findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
     const ModelEffect& effect = findings[0].effect;
-    return fmt::format("To add it and fit: {} add {} {} --where {}{}", program(), shell_quote(effect.id),
-                       shell_option("--formula", effect.formula), info_of(effect.location).name, and_fit);
+    return {{"To add it and fit",
+             fmt::format("{} add {} {} --where {}{}", program(), shell_quote(effect.id),
+                         shell_option("--formula", effect.formula), info_of(effect.location).name, and_fit)}};
   }
   std::vector<std::string> roles;  // lines of the table [variables], each once: engine_torque = "ENGTRQ"
   for (const UnnamedRole& each : diagnosis.unnamed_roles) {
     std::string line = fmt::format("{} = \"{}\"", each.role, each.variable);
     if (std::find(roles.begin(), roles.end(), line) == roles.end()) roles.push_back(std::move(line));
   }
-  const std::string improve =
-      fmt::format("{} improve {} -m {}{}", program(), flights, model, command_line(options.candidates));
-  if (!roles.empty()) {
-    return fmt::format("First write {} into [variables] of {}. Then test its effect: {} -o {}",
-                       fmt::join(roles, " and "), options.model, improve, best);
-  }
-  if (!findings.empty())
-    return fmt::format("To add helpful effects one after another: {} -o {}", improve, best);
+  const std::string improve = fmt::format("{} improve {} -m {}{} -o {}", program(), flights, model,
+                                          command_line(options.candidates), best);
+  if (!roles.empty())
+    return {{fmt::format("First write {} into [variables] of {}. Then test its effect",
+                         fmt::join(roles, " and "), options.model),
+             improve}};
+  if (!findings.empty()) return {{"To add helpful effects one after another", improve}};
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
-    return fmt::format(
-        "To test a formula of {} on held-out data: {} improve {} -m {} --trace-variables -o {}",
-        variable.name, program(), flights, model, best);
+    return {{fmt::format("To test a formula of {} on held-out data", variable.name),
+             fmt::format("{} improve {} -m {} --trace-variables -o {}", program(), flights, model, best)}};
   }
-  return fmt::format("To test a smooth surface on held-out data: {} -o {}", improve, best);
+  return {{"To test a smooth surface on held-out data", improve}};
 }
 
 void print(const Diagnosis& diagnosis, const ModelDefinition& model, const ChosenReferences& references,
@@ -253,7 +251,7 @@ void print(const Diagnosis& diagnosis, const ModelDefinition& model, const Chose
   }
   say_notes(diagnosis.notes);
   say_written({options.common.report, options.common.json});
-  say("{}\n", next_command(diagnosis, model, options));
+  say_next(next_steps(diagnosis, model, options));
 }
 
 /// @throws Error if no flight has a variable of --not-variable
@@ -303,7 +301,7 @@ void run(const DiagnoseArguments& options) {
   if (!options.common.report.empty())
     write_report_of_run(
         diagnosis_report(diagnosis, model, &tried),
-        {{options.model}, options.comparison.flights, {}, next_command(diagnosis, model, options)},
+        {{options.model}, options.comparison.flights, {}, next_steps(diagnosis, model, options)},
         options.common);
   json.write(diagnosis);
   together.appear();

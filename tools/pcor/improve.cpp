@@ -32,13 +32,14 @@ struct ImproveArguments {
   bool force = false;
 };
 
-std::string next_step(const Improvement& improvement, const ImproveArguments& options) {
+std::vector<NextStep> next_steps(const Improvement& improvement, const ImproveArguments& options) {
   if (improvement.fit.defect_error > max_defect_error)
-    return fmt::format(
-        "The flights do not determine delta-p: its standard error is {:.2f} hPa. Give a further --reference",
-        improvement.fit.defect_error);
-  return "To apply it: " + process_command(options.comparison.flights, improvement.model, options.output,
-                                           options.comparison.timestamp_alignment);
+    return {
+        {fmt::format("The flights do not determine delta-p: its standard error is {:.2f} hPa. Give a "
+                     "further --reference",
+                     improvement.fit.defect_error)}};
+  return {{"To apply it", process_command(options.comparison.flights, improvement.model, options.output,
+                                          options.comparison.timestamp_alignment)}};
 }
 
 void print(const Improvement& improvement, const ChosenReferences& references,
@@ -102,7 +103,7 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   if (is_verbose()) print_unexplained(improvement.steps.back().diagnosis.unexplained);
   say_notes(improvement.fit.notes);
   say_written({options.output, options.common.report, options.common.json});
-  say("{}\n", next_step(improvement, options));
+  say_next(next_steps(improvement, options));
 }
 
 void run(const ImproveArguments& options) {
@@ -145,7 +146,7 @@ void run(const ImproveArguments& options) {
                         {{options.model, options.output},
                          options.comparison.flights,
                          options.fit.holdout,
-                         next_step(improvement, options)},
+                         next_steps(improvement, options)},
                         options.common);
   improvement.output = options.output;
   json.write(improvement);

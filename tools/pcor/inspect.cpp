@@ -473,9 +473,9 @@ void run(const InspectArguments& options) {
     deliver_with_candidates(first, options.model);
   }
   if (!options.common.report.empty()) {
-    write_report_of_run(inspection_report(readable),
-                        {{}, options.flights, {}, first.next.empty() ? "" : "Next: " + first.next.front()},
-                        options.common);
+    std::vector<NextStep> next;
+    if (!first.next.empty()) next.push_back({"Next", first.next.front()});
+    write_report_of_run(inspection_report(readable), {{}, options.flights, {}, next}, options.common);
   }
   json.write(result);
   together.appear();

@@ -94,14 +94,15 @@ void print_flags(const Flags& flagged) {
 }
 
 /// Next step for the first processed flight; empty if no flight was processed.
-std::string next_step(const std::vector<ProcessedFlight>& flights, const std::string& report) {
+std::vector<NextStep> next_steps(const std::vector<ProcessedFlight>& flights, const std::string& report) {
   const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
     return each.state == FlightState::processed;
   });
-  if (done == flights.end()) return "";
-  if (!report.empty()) return "To look at the result, open in a browser: " + shell_path(report);
-  return fmt::format("To look at the result: ncdump -v {} {} | less",
-                     shell_quote(done->summary.outputs.front()), shell_path(done->output.string()));
+  if (done == flights.end()) return {};
+  if (!report.empty()) return {{"To look at the result, open in a browser: " + shell_path(report)}};
+  return {{"To look at the result",
+           fmt::format("ncdump -v {} {} | less", shell_quote(done->summary.outputs.front()),
+                       shell_path(done->output.string()))}};
 }
 
 /// Prints the summary of one flight.
@@ -320,7 +321,7 @@ void run(const ProcessArguments& options) {
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (!options.common.report.empty() && !none) {
     write_report_of_run(process_report(flights, process.process.suffix),
-                        {{options.model + options.models}, options.inputs, {}, next_step(flights, "")},
+                        {{options.model + options.models}, options.inputs, {}, next_steps(flights, "")},
                         options.common);
   }
   if (many)
@@ -341,7 +342,7 @@ void run(const ProcessArguments& options) {
     say("{} is up to date for this version, flight, model and options\n", first.output.string());
   }
   say_written({options.common.report, options.common.json});
-  if (const std::string next = next_step(flights, options.common.report); !next.empty()) say("{}\n", next);
+  say_next(next_steps(flights, options.common.report));
 }
 
 }  // namespace

@@ -214,7 +214,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
   print_further(result.further);
 }
 
-std::string next_step(const RefitArguments& options) {
+std::vector<NextStep> next_steps(const RefitArguments& options) {
   ComparisonOptions fitted = options.comparison;
   if (!options.reference_output.empty()) {
     const std::string first = fitted.references.front();
@@ -225,8 +225,8 @@ std::string next_step(const RefitArguments& options) {
         reference = reference.substr(0, colon) + ":" + options.reference_output;
     }
   }
-  return fmt::format("To find missing effects: {} diagnose {} -m {}", program(), advised_command_line(fitted),
-                     shell_path(options.output));
+  return {{"To find missing effects", fmt::format("{} diagnose {} -m {}", program(),
+                                                  advised_command_line(fitted), shell_path(options.output))}};
 }
 
 /// Comparison of the model before and after the fit, for the report.
@@ -336,11 +336,11 @@ void run(const RefitArguments& options) {
   if (!is_speaker()) return;
   OutputTransaction together;
   if (comparison) {
-    write_report_of_run(
-        refit_report(result, *comparison),
-        {is_refused ? std::vector{options.model} : std::vector{options.model, options.output},
-         options.comparison.flights, options.fit.holdout, is_refused ? "" : next_step(options)},
-        options.common);
+    write_report_of_run(refit_report(result, *comparison),
+                        {is_refused ? std::vector{options.model} : std::vector{options.model, options.output},
+                         options.comparison.flights, options.fit.holdout,
+                         is_refused ? std::vector<NextStep>{} : next_steps(options)},
+                        options.common);
   }
   if (table) table->write(options.table);
   json.write(result);
@@ -358,7 +358,7 @@ void run(const RefitArguments& options) {
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (!with_text) return;
   say_written({options.output, options.reference_output});
-  say("{}\n", next_step(options));
+  say_next(next_steps(options));
 }
 
 }  // namespace

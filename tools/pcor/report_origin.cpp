@@ -21,6 +21,11 @@ void remember_command(int count, const char* const* words) {
   for (int i = 1; i < count; ++i) command_of_this_run += " " + shell_quote(words[i]);
 }
 
+void say_next(const std::vector<NextStep>& steps) {
+  for (const NextStep& step : steps)
+    say("{}{}{}\n", step.text, step.command.empty() ? "" : ": ", step.command);
+}
+
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options) {
   report.next = files.next;
   report.origin.emplace_back("Command", command_of_this_run);

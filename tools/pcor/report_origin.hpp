@@ -11,12 +11,15 @@ namespace pcor::tool {
 /// Stores the command line of this run for `write_report_of_run`.
 void remember_command(int count, const char* const* words);
 
-/// Input files of a report, and the next step.
+/// Prints the steps, each on a line: "To apply it: pcor process ...".
+void say_next(const std::vector<NextStep>& steps);
+
+/// Input files of a report, and the next steps.
 struct ReportFiles {
   std::vector<std::string> models{};
   std::vector<std::string> flights{};  ///< fitted or compared with a model
   std::vector<std::string> held_out{};
-  std::string next{};  ///< "To apply it: pcor process ..."; may be empty
+  std::vector<NextStep> next{};
 };
 
 /// Writes the report named by the options, with its provenance at the foot: the command, the date, the

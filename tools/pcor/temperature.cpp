@@ -149,7 +149,7 @@ std::vector<std::string> used_flights(const TemperatureResult& result, const Tem
   return used;
 }
 
-std::string next_step(const TemperatureResult& result, const TemperatureArguments& options) {
+std::vector<NextStep> next_steps(const TemperatureResult& result, const TemperatureArguments& options) {
   const auto process = [&](const std::string& model) {
     return process_command(used_flights(result, options), result.model, model,
                            options.comparison.timestamp_alignment);
@@ -157,13 +157,15 @@ std::string next_step(const TemperatureResult& result, const TemperatureArgument
   if (result.worse.empty() && result.is_implausible()) {
     ComparisonOptions flights = options.comparison;
     flights.references.clear();
-    return fmt::format("To find the cause of the large correction: {} check {} -m {}", program(),
-                       advised_command_line(flights), model_argument(options.model));
+    return {{"To find the cause of the large correction",
+             fmt::format("{} check {} -m {}", program(), advised_command_line(flights),
+                         model_argument(options.model))}};
   }
-  if (result.worse.empty()) return "To apply it: " + process(options.output);
-  return "Flights that climb and descend by 3 km and more, there and back along the same track, determine "
-         "the correction better. To apply the input model: " +
-         process(options.model);
+  if (result.worse.empty()) return {{"To apply it", process(options.output)}};
+  return {
+      {"Flights that climb and descend by 3 km and more, there and back along the same track, determine "
+       "the correction better. To apply the input model",
+       process(options.model)}};
 }
 
 void run(const TemperatureArguments& options) {
@@ -201,7 +203,7 @@ void run(const TemperatureArguments& options) {
                         {is_refused ? std::vector{options.model} : std::vector{options.model, options.output},
                          options.comparison.flights,
                          {},
-                         next_step(result, options)},
+                         next_steps(result, options)},
                         options.common);
   json.write(in_turn);
   if (!is_refused) {
@@ -219,7 +221,7 @@ void run(const TemperatureArguments& options) {
   if (!with_text) return;
   say_written({options.output});
   if (!result.worse.empty()) say("Not recommended: {}.\n", result.worse);
-  say("{}\n", next_step(result, options));
+  say_next(next_steps(result, options));
 }
 
 }  // namespace

@@ -282,13 +282,19 @@ using ReportItem =
     std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel, CurvePanel, TrackPanel,
                  StripPanel, RegimePanel, QuantilePanel, DotPanel, WhatIfPanel, ReportTable, ReportText>;
 
+/// A step that a report advises: the page shows "text: command", or the text as a sentence.
+struct NextStep {
+  std::string text{};     ///< "To apply it", or a sentence if there is no command
+  std::string command{};  ///< for a shell; may be empty
+};
+
 /// Content of a report in reading order: title, summary, next step, facts, items, origin. All strings are
 /// plain UTF-8.
 struct Report {
   std::string title;  ///< the result in one sentence
   std::string subtitle;
   std::vector<std::string> summary;  ///< sentences; the page folds those after the second
-  std::string next;  ///< "To apply it: pcor process ...", or a sentence, in each line; may be empty
+  std::vector<NextStep> next;        ///< in this order; may be empty
   std::vector<std::pair<std::string, std::string>>
       info;                                ///< name and value, e.g. "Model"; folded on the page
   std::vector<double> time;                ///< sample times, s since 1970 UTC
