@@ -69,6 +69,12 @@ Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residu
   return residual - shapes * symmetric_solution(normal, shapes.transpose() * residual);
 }
 
+/// The residual of one of several flights, moved to the mean of all.
+Eigen::VectorXd at_common_mean(const Eigen::VectorXd& residual, const NoiseModel& noise) {
+  if (!noise.mean || residual.size() == 0) return residual;
+  return residual.array() - (residual.mean() - *noise.mean);
+}
+
 std::vector<double> concatenated(const std::vector<Eigen::VectorXd>& flights) {
   std::vector<double> all;
   for (const Eigen::VectorXd& flight : flights) all.insert(all.end(), flight.begin(), flight.end());
@@ -234,8 +240,13 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
   std::size_t count = 0;
   std::vector<Segment> segments;
   std::vector<Eigen::VectorXd> fast;
+  if (bins.size() > 1) {
+    const std::vector<double> all = concatenated(residuals);
+    noise.mean =
+        std::accumulate(all.begin(), all.end(), 0.0) / std::max(1.0, static_cast<double>(all.size()));
+  }
   for (std::size_t f = 0; f < bins.size(); ++f) {
-    fast.push_back(without_drift(bins[f], residuals[f]));
+    fast.push_back(without_drift(bins[f], at_common_mean(residuals[f], noise)));
     for (const Segment& segment : bins[f].segments())
       segments.push_back({count + segment.first, segment.count});
     count += bins[f].size();
@@ -256,7 +267,8 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
 }
 
 Eigen::VectorXd noise_levels(const Binning& bins, const Eigen::VectorXd& residual, const NoiseModel& noise) {
-  return levels_of(at_one_level(without_drift(bins, residual), bins, noise), bins, noise);
+  const Eigen::VectorXd fast = without_drift(bins, at_common_mean(residual, noise));
+  return levels_of(at_one_level(fast, bins, noise), bins, noise);
 }
 
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
@@ -309,7 +321,9 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
                             static_cast<double>(all.size()));
     for (Eigen::VectorXd& level : noise.level) level.setConstant(noise.scale);
   }
-  if (!noise.drifts()) return noise;
+  // The means of several flights show drift that is slower than each of them.
+  const bool shows_slower_drift = noise.mean && rms > 0.0;
+  if (!noise.drifts() && !shows_slower_drift) return noise;
   RestrictedLikelihood likelihood(bins, columns, residuals, threads);
   NoiseModel tried = noise;
   std::array<double, slow_times.size()> squares{};
@@ -318,10 +332,12 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   double maximum = -std::numeric_limits<double>::infinity();
   const double longest = longest_duration(bins);
   for (const SlowSizes& sizes : possible_sizes()) {
-    // A drift slower than the flights is a constant in each of them: the flights do not determine its size.
+    // A drift slower than a single flight is a constant: the flight does not determine its size.
     bool is_seen = true;
-    for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
-      is_seen = is_seen && (sizes.slowest[k] == 0.0 || slow_times[first_uncertain + k] <= longest);
+    for (std::size_t k = 0; k < sizes.slowest.size(); ++k) {
+      is_seen = is_seen &&
+                (shows_slower_drift || sizes.slowest[k] == 0.0 || slow_times[first_uncertain + k] <= longest);
+    }
     if (!is_seen) continue;
     for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
       tried.slow[first_uncertain + k] = sizes.slowest[k] * rms;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "numerics/binning.hpp"
@@ -20,6 +21,7 @@ struct NoiseModel {
   std::array<double, slow_times.size()> slow{};  ///< rms of each slow part, hPa
   double common_level = 0.0;                     ///< level to which the level of each five minutes is shrunk,
                                                  ///< hPa
+  std::optional<double> mean{};                  ///< mean of the residuals, if there are several flights, hPa
   double scale = 1.0;                            ///< factor on the levels, beyond their estimate from the
                                                  ///< residuals
 
@@ -52,14 +54,16 @@ struct NoiseFlight {
 /// flight.
 std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& flights, std::size_t maximum = 16);
 
-/// Estimates autoregression and level from residuals from which all effects are removed. Slow drift is
-/// subtracted first, so that it does not appear as autocorrelation of the noise.
+/// Estimates autoregression and level from residuals from which all effects are removed. Slow drift and, if
+/// there are several flights, the differences between their means are subtracted first, so that they do not
+/// appear as autocorrelation of the noise.
 ///
 /// @param residuals of each flight, in bins, hPa
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals);
 
 /// Level of each bin of a flight, for each five minutes, with the common part of the noise of the flights
-/// that determined the noise. Such a flight has its levels in the noise model.
+/// that determined the noise. Such a flight has its levels in the noise model. If there were several, the
+/// residual is moved to their mean.
 ///
 /// @param residual in bins, hPa
 Eigen::VectorXd noise_levels(const Binning& bins, const Eigen::VectorXd& residual, const NoiseModel& noise);
@@ -75,9 +79,10 @@ Eigen::VectorXd noise_levels(const Binning& bins, const Eigen::VectorXd& residua
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals, std::size_t threads = 0);
 
-/// Noise for the errors of means: the noise by `find_noise`; if it drifts, the variances of its slowest
-/// components, from 800 s on, are expected values, averaged over sizes with their restricted likelihood. A
-/// few flights determine these components poorly, and the most likely sizes are too small on average.
+/// Noise for the errors of means: the noise by `find_noise`; if it drifts, or if there are several flights,
+/// the variances of its slowest components, from 800 s on, are expected values, averaged over sizes with
+/// their restricted likelihood. A few flights determine these components poorly, and the most likely sizes
+/// are too small on average.
 NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                           const std::vector<Eigen::VectorXd>& residuals, std::size_t threads = 0);
 

@@ -154,6 +154,28 @@ TEST(NoiseModel, SlowDriftDoesNotChangeTheEstimate) {
   EXPECT_NEAR(with.level[0].mean(), without.level[0].mean(), 0.01);
 }
 
+// A zero differs from flight to flight. The differences became a memory of many bins of the noise, so that
+// the slow parts were too small. A flight may have no bin.
+TEST(NoiseModel, DifferencesOfMeansDoNotChangeTheEstimate) {
+  const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)), Binning(),
+                                  bins_of(std::vector<double>(900, 0.0))};
+  const auto level = [](std::size_t) { return 0.2; };
+  std::vector<Eigen::VectorXd> residuals{second_order(600, 14, level), Eigen::VectorXd(),
+                                         second_order(900, 15, level)};
+  const NoiseModel without = estimate_noise(bins, residuals);
+  residuals[0].array() += 0.9;  // the mean of all bins remains
+  residuals[2].array() -= 0.6;
+  const NoiseModel with = estimate_noise(bins, residuals);
+  ASSERT_EQ(with.coefficients.size(), without.coefficients.size());
+  constexpr double rounding = 1e-12;
+  for (std::size_t k = 0; k < with.coefficients.size(); ++k)
+    EXPECT_NEAR(with.coefficients[k], without.coefficients[k], rounding);
+  for (const std::size_t f : {0U, 2U}) {
+    EXPECT_LT((with.level[f] - without.level[f]).cwiseAbs().maxCoeff(), rounding);
+    EXPECT_EQ(noise_levels(bins[f], residuals[f], with), with.level[f]);
+  }
+}
+
 TEST(NoiseModel, EachFlightHasItsOwnLevel) {
   const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
                                   bins_of(std::vector<double>(900, 0.0))};
