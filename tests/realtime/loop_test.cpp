@@ -345,7 +345,7 @@ TEST(Loop, ExtendedFlapsAreOutsideTheDomain) {
   Model step;
   step.effects.push_back({"aircraft-step", {0.0, 4000.0}});
   recorded[Quantity::date] = 5000.0;
-  EXPECT_FALSE(is_flagged(step, 40.0)) << "a step of zero changes nothing, whatever its date";
+  EXPECT_FALSE(is_flagged(step, 40.0)) << "a step of zero changes nothing on any date";
 }
 
 TEST(LoopOrder, CircularDependencyIsRefusedAndReported) {

@@ -6,15 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include <pcor/effects/catalogue.hpp>
 #include "model_name.hpp"
 
 namespace pcor::tool {
 namespace {
 
 bool changes_total_pressure(const ModelEffect& effect) {
-  if (effect.is_surface()) return false;
-  const EffectLocation location = effect.is_formula() ? effect.location : effect_named(effect.id)->location;
+  const EffectLocation location = location_of(effect);
   return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
          location == EffectLocation::total_line || location == EffectLocation::pitot;
 }
@@ -82,10 +80,10 @@ Support evidence_for(const ModelComparison& worst, const ModelDefinition& model,
 }
 
 /// Composes the steps for the best model.
-class Advice {
+class ComparisonAdvice {
  public:
-  Advice(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
-         const CompareArguments& options)
+  ComparisonAdvice(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
+                   const CompareArguments& options)
       : result_(result),
         models_(models),
         options_(options),
@@ -258,7 +256,7 @@ bool is_close_to_noise(const ModelComparison& worst) { return worst.noise_ratio(
 
 std::vector<NextStep> next_steps(const ComparisonWithGps& result, const std::vector<ComparedModel>& models,
                                  const CompareArguments& options) {
-  return Advice(result, models, options).steps();
+  return ComparisonAdvice(result, models, options).steps();
 }
 
 }  // namespace pcor::tool

@@ -7,8 +7,8 @@
 
 #include <pcor/compare/compare.hpp>
 #include <pcor/fit/refit.hpp>
+#include <pcor/report/report.hpp>
 #include "comparison.hpp"
-#include "report_origin.hpp"
 
 namespace pcor::tool {
 

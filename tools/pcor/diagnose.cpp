@@ -135,7 +135,8 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 }
 
 /// The command that adds the findings, or the empirical term, and fits; otherwise the command that repeats
-/// this for findings that one command cannot add.
+/// this for findings that one command cannot add. A sentence for each part that a model file cannot represent
+/// comes first.
 std::vector<NextStep> next_steps(const Diagnosis& diagnosis, const ModelDefinition& diagnosed,
                                  const DiagnoseArguments& options) {
   const std::string flights = advised_command_line(options.comparison) + command_line(options.fit);

@@ -285,7 +285,7 @@ using ReportItem =
 /// A step that a report advises: the page shows "text: command", or the text as a sentence.
 struct NextStep {
   std::string text{};     ///< "To apply it", or a sentence if there is no command
-  std::string command{};  ///< for a shell; may be empty
+  std::string command{};  ///< command line of a shell, or empty
 };
 
 /// Content of a report in reading order: title, summary, next step, facts, items, origin. All strings are
@@ -294,7 +294,7 @@ struct Report {
   std::string title;  ///< the result in one sentence
   std::string subtitle;
   std::vector<std::string> summary;  ///< sentences; the page folds those after the second
-  std::vector<NextStep> next;        ///< in this order; may be empty
+  std::vector<NextStep> next;        ///< advised steps, if any
   std::vector<std::pair<std::string, std::string>>
       info;                                ///< name and value, e.g. "Model"; folded on the page
   std::vector<double> time;                ///< sample times, s since 1970 UTC
