@@ -147,11 +147,11 @@ std::vector<std::string> parameter_names(const ModelEffect& effect);
 /// unknown.
 ModelEffect neutral_effect(std::string_view id);
 
-/// Where an effect acts. @param effect a formula, a surface or an effect of the catalogue
+/// Where an effect acts. @param effect a formula, a surface, or an effect whose id is in the catalogue
 EffectLocation location_of(const ModelEffect& effect);
 
-/// Whether an effect of the catalogue or a surface changes nothing: all its coefficients are neutral,
-/// whatever its shape parameters. False for a formula.
+/// Whether an effect of the catalogue or a surface changes nothing: all its coefficients are neutral. Shape
+/// parameters do not count. False for a formula.
 bool is_neutral(const ModelEffect& effect);
 
 /// Surface effect with all coefficients zero, to be fitted. @param axes each must be valid
