@@ -100,25 +100,17 @@ struct AngleCheck {
 AngleSensitivity sensitivity_of(const Flown& flown, const AngleReference& reference,
                                 const std::vector<double>& residual, const AngleCheck& check) {
   const FlightAir& air = flown.flight->air;
-  const std::vector<double> time = flown.time();
   const std::vector<double> angles = flown.of(check.angle_of(air));
   AngleSensitivity result{flown, reference, less_mean(residual), standard_deviation(angles)};
-  const auto fit = [&](const std::vector<double>& x, bool squared) {
-    std::vector<std::vector<double>> columns{std::vector<double>(x.size(), 1.0), less_mean(time),
-                                             less_mean(x)};
-    if (squared) {
-      std::vector<double> squares = x;
-      for (double& value : squares) value *= value;
-      columns.push_back(less_mean(squares));
-    }
-    return least_squares(columns, residual, time, flown.step());
-  };
-  const LeastSquares against_angle = fit(angles, check.with_square);
+  std::vector<std::vector<double>> columns{angles};
+  if (check.with_square) columns.push_back(squares_of(angles));
+  const LeastSquares against_angle = flown.regression(residual, columns);
   result.slope = against_angle.coefficients[2];
   result.scatter = against_angle.rms;
   if (check.with_square) result.bend = against_angle.coefficients[3];
   for (const double each : angles) result.maximum = std::fmax(result.maximum, std::abs(each));
-  if (!(air.*check.ratio).empty()) result.per_ratio = fit(flown.of(air.*check.ratio), false).coefficients[2];
+  if (!(air.*check.ratio).empty())
+    result.per_ratio = flown.regression(residual, {flown.of(air.*check.ratio)}).coefficients[2];
   return result;
 }
 

@@ -21,6 +21,13 @@ std::vector<double> Flown::of(const std::vector<double>& series) const {
 
 double Flown::mean(const std::vector<double>& series) const { return mean_of(of(series)); }
 
+LeastSquares Flown::regression(const std::vector<double>& y,
+                               const std::vector<std::vector<double>>& x) const {
+  std::vector<std::vector<double>> columns{std::vector<double>(y.size(), 1.0), less_mean(time())};
+  for (const std::vector<double>& series : x) columns.push_back(less_mean(series));
+  return least_squares(columns, y, time(), step());
+}
+
 std::string Flown::location() const {
   return fmt::format("{}, {} to {}", flight->air.samples->name, utc_text(interval.begin),
                      utc_text(interval.end, "%H:%M:%S"));
@@ -56,10 +63,13 @@ std::pair<double, double> range_of(const std::vector<double>& values) {
   return range;
 }
 
+std::vector<double> squares_of(std::vector<double> values) {
+  for (double& value : values) value *= value;
+  return values;
+}
+
 double standard_deviation(const std::vector<double>& values) {
-  std::vector<double> squares = less_mean(values);
-  for (double& value : squares) value *= value;
-  return std::sqrt(mean_of(squares));
+  return std::sqrt(mean_of(squares_of(less_mean(values))));
 }
 
 std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {

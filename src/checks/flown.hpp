@@ -25,6 +25,9 @@ struct Flown {
   std::vector<double> of(const std::vector<double>& series) const;
   double mean(const std::vector<double>& series) const;  ///< Mean of a series; NaN if all values are missing
   double step() const { return flight->air.step(); }
+  /// Regression of `y` on series `x`, all at the samples, with a constant (coefficient 0) and a drift in time
+  /// (coefficient 1); all columns but the constant are less their means.
+  LeastSquares regression(const std::vector<double>& y, const std::vector<std::vector<double>>& x) const;
   /// Name like "rf05.nc, 2011-11-17 22:51:00 to 22:53:00".
   std::string location() const;
   /// Short name like "rf05.nc 22:51", for pictures.
@@ -36,6 +39,7 @@ std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
 
 /// Minimum and maximum of the known values; NaN if all are missing.
 std::pair<double, double> range_of(const std::vector<double>& values);
+std::vector<double> squares_of(std::vector<double> values);
 double standard_deviation(const std::vector<double>& values);
 /// The first series minus the second one, of the same length.
 std::vector<double> difference(std::vector<double> a, const std::vector<double>& b);

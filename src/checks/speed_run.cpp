@@ -38,23 +38,17 @@ struct Run {
   Trend wind;                   ///< UXW, m/s
 };
 
-/// Straight line against `x` with a drift in time.
-LeastSquares line_against(const std::vector<double>& x, const std::vector<double>& y, const Flown& flown) {
-  const std::vector<double> time = flown.time();
-  return least_squares({std::vector<double>(y.size(), 1.0), less_mean(time), less_mean(x)}, y, time,
-                       flown.step());
-}
-
 /// @param values of the series at the samples of the run
+/// @param fitted values for the slope, which may be without a part that is known
 /// @param per_unit error of delta-p for one unit of the series, hPa
 /// @param min_drift of the series from end to end that its samples do not show as noise
-Trend trend_of(const std::vector<double>& values, const Flown& flown, double airspeed_range, double per_unit,
-               double min_drift) {
+Trend trend_of(const std::vector<double>& values, const std::vector<double>& fitted, const Flown& flown,
+               double airspeed_range, double per_unit, double min_drift) {
   Trend trend;
   trend.scatter = standard_deviation(values);
   const auto [minimum, maximum] = range_of(values);
   trend.range = maximum - minimum;
-  const LeastSquares line = line_against(flown.of(flown.flight->air.airspeed), values, flown);
+  const LeastSquares line = flown.regression(fitted, {flown.of(flown.flight->air.airspeed)});
   trend.slope = line.coefficients[2];
   const double across = airspeed_range * per_unit;
   const double drift = std::max(min_drift, drift_in_scatter * line.rms);
@@ -84,15 +78,14 @@ Run run_of(const Flown& flown) {
   const double pressure = flown.mean(air.pressure);
   const double scale =
       flown.mean(air.gas_constant) * flown.mean(air.temperature) / constants::standard_gravity;  // m
-  const std::vector<double> d_value = height_problem(air).empty() ? air.d_value : std::vector<double>{};
-  run.height = trend_of(flown.of(d_value), flown, run.airspeed_range, pressure / scale, min_drift_of_height);
-  const Trend above = trend_of(height_above_pressure(flown, d_value.empty(), scale, pressure), flown,
-                               run.airspeed_range, pressure / scale, min_drift_of_height);
-  run.height.slope = above.slope;
-  run.height.pressure_error = above.pressure_error;
-  run.dynamic_slope = line_against(flown.of(air.dynamic), flown.of(d_value), flown).coefficients[2];
+  const bool has_height = height_problem(air).empty() && !air.d_value.empty();
+  const std::vector<double> d_value = flown.of(has_height ? air.d_value : std::vector<double>{});
+  run.height = trend_of(d_value, height_above_pressure(flown, !has_height, scale, pressure), flown,
+                        run.airspeed_range, pressure / scale, min_drift_of_height);
+  run.dynamic_slope = flown.regression(d_value, {flown.of(air.dynamic)}).coefficients[2];
   // The tail wind is too low if the airspeed is too high.
-  run.wind = trend_of(flown.of(air.tail_wind), flown, run.airspeed_range,
+  const std::vector<double> tail_wind = flown.of(air.tail_wind);
+  run.wind = trend_of(tail_wind, tail_wind, flown, run.airspeed_range,
                       -pressure_per_airspeed(pressure, flown.mean(air.mach), flown.mean(air.airspeed)),
                       wind_drift_of_run);
   return run;
