@@ -75,7 +75,7 @@ Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   }
   // Two pairs with one pitot have no redundant total pressures.
   const auto other = std::find_if(pairs.begin(), pairs.end(), [&](const PressurePair& pair) {
-    return systems.own && !same(pair, *systems.own) && pair.static_pressure != systems.own->static_pressure &&
+    return systems.own && pair.static_pressure != systems.own->static_pressure &&
            pair.dynamic_pressure != systems.own->dynamic_pressure;
   });
   if (other != pairs.end()) systems.other = *other;

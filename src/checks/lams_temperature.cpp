@@ -33,13 +33,6 @@ struct Differences {
   double step = nan;                ///< record interval with the most differences, s
 };
 
-std::vector<bool> in_cloud(const FlightAir& air) {
-  const std::vector<RegimeSet> regimes = regimes_of_samples(air.time(), air.samples->intervals);
-  std::vector<bool> cloud(air.size());
-  for (std::size_t i = 0; i < air.size(); ++i) cloud[i] = regimes[i][static_cast<std::size_t>(Regime::cloud)];
-  return cloud;
-}
-
 /// Pressure altitude at the beginning of the flight, m: on the ground, or the minimum.
 double field_of(const FlightAir& air) {
   if (!air.pressure_altitude.empty() && !air.flying.front() && std::isfinite(air.pressure_altitude.front()))
@@ -67,13 +60,13 @@ Differences all_differences(const CheckedFlights& flights) {
     const FlightAir& air = flight.air;
     const std::vector<double> difference = difference_of(air);
     if (!has_value(difference) || !has_step(flight, all.step)) continue;
-    const std::vector<bool> cloud = in_cloud(air);
+    const std::vector<RegimeSet> regimes = regimes_of_samples(air.time(), air.samples->intervals);
     const double field = field_of(air);
     for (std::size_t i = 0; i < air.size(); ++i) {
       all.time.push_back(air.time()[i]);
       all.values.push_back(difference[i]);
       all.altitude.push_back(air.pressure_altitude[i]);
-      all.in_cloud.push_back(cloud[i]);
+      all.in_cloud.push_back(regimes[i][static_cast<std::size_t>(Regime::cloud)]);
       all.near_ground.push_back(air.pressure_altitude[i] < field + boundary_layer);
     }
   }
