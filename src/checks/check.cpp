@@ -38,10 +38,6 @@ PressurePair pair_of(const ModelDefinition& model) {
   return {model.variables.at(Quantity::static_pressure), model.variables.at(Quantity::dynamic_pressure)};
 }
 
-bool same(const PressurePair& a, const PressurePair& b) {
-  return a.static_pressure == b.static_pressure && a.dynamic_pressure == b.dynamic_pressure;
-}
-
 /// Reason why the pressures of a model cannot be used although their variables are in the flight; empty if
 /// they can.
 std::string without_values(const Flight& flight, const ModelDefinition& model) {
@@ -94,7 +90,7 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
   const Systems systems = systems_of(flights[number], of_model);
   if (systems.own) {
     result.measured.push_back(
-        same(*systems.own, of_model)
+        *systems.own == of_model
             ? measured(of_model.name(), result.air)
             : measured(systems.own->name(),
                        read_flight_air(flights, number, model_of(*systems.own), options.mask)));
@@ -103,7 +99,7 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
   std::optional<ModelDefinition> second = options.second;
   if (!second && systems.other) second = model_of(*systems.other);
   if (!second) return result;
-  if (same(pair_of(*second), of_model)) {
+  if (pair_of(*second) == of_model) {
     throw Error(
         Error::Code::usage,
         fmt::format("the model '{}' has the pressures {} of the model under test; give a second system with "

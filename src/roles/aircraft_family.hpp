@@ -20,6 +20,10 @@ struct PressurePair {
   std::string name() const { return static_pressure + "/" + dynamic_pressure; }
 };
 
+inline bool operator==(const PressurePair& a, const PressurePair& b) {
+  return a.static_pressure == b.static_pressure && a.dynamic_pressure == b.dynamic_pressure;
+}
+
 /// A recovery temperature, and the law of its thermometer.
 struct Thermometer {
   std::string variable;
