@@ -172,15 +172,13 @@ class Look {
         return;
       }
     }
-    const std::string& static_pressure = model.variables[Quantity::static_pressure];
-    const std::string& dynamic_pressure = model.variables[Quantity::dynamic_pressure];
-    result_.is_corrected =
-        std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
-          return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
-        });
+    const PressurePair pair{model.variables[Quantity::static_pressure],
+                            model.variables[Quantity::dynamic_pressure]};
+    const std::vector<PressurePair>& processed = family_.processed;
+    result_.is_corrected = std::find(processed.begin(), processed.end(), pair) != processed.end();
     if (result_.is_corrected) {
-      result_.notes.push_back(warning_note(
-          fmt::format("{} and {} are already corrected by the archive", static_pressure, dynamic_pressure)));
+      result_.notes.push_back(warning_note(fmt::format("{} and {} are already corrected by the archive",
+                                                       pair.static_pressure, pair.dynamic_pressure)));
     }
     if (const auto altitude = model.variables.find(Quantity::altitude);
         altitude != model.variables.end() && pressure_altitudes_.count(altitude->second) != 0)
@@ -216,6 +214,8 @@ class Look {
         pressures.push_back({candidate.variable, family_.unit_of(candidate.variable)});
     }
     const QuantityInfo& info = *series_named(series);
+    const std::string whole_flight =
+        fmt::format("{} to {}", utc_text(flight_.time().first), utc_text(flight_.time().last, "%H:%M:%S"));
     const auto evidence_of = [&](const std::string& variable) {
       const UnitConversion conversion =
           flight_.conversion(variable, std::string(info.unit), "", family_.unit_of(variable));
@@ -224,17 +224,13 @@ class Look {
       if (evidence.kind == HeightEvidence::Kind::pressure_altitude &&
           pressure_altitudes_.insert(variable).second) {
         result_.problems.push_back(
-            {variable, "pressure altitude, consistent with " + evidence.pressure,
-             fmt::format("{} to {}", utc_text(flight_.time().first),
-                         utc_text(flight_.time().last, "%H:%M:%S")),
+            {variable, "pressure altitude, consistent with " + evidence.pressure, whole_flight,
              evidence.scatter, "hPa",
              "not used as altitude, because it is not a GPS height: a fit to it would be circular"});
       }
       if (const std::string problem = evidence.slope_problem(variable);
           !problem.empty() && impossible_heights_.insert(variable).second) {
-        result_.problems.push_back({variable, "change of height impossible for the pressure",
-                                    fmt::format("{} to {}", utc_text(flight_.time().first),
-                                                utc_text(flight_.time().last, "%H:%M:%S")),
+        result_.problems.push_back({variable, "change of height impossible for the pressure", whole_flight,
                                     evidence.slope, "times the pressure altitude", problem});
       }
       return evidence;
