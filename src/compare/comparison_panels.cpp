@@ -13,6 +13,7 @@
 #include "base/phrasing.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
+#include "residuals/masks.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -23,15 +24,6 @@ constexpr std::size_t min_in_regime = 60;
 constexpr double notable_failure = 1.2;
 
 std::string residual_column(std::size_t model) { return fmt::format("residual{}", model + 1); }
-
-/// Used samples of a flight: a report shows no others.
-std::vector<std::size_t> used(const FlightResiduals& flight) {
-  std::vector<std::size_t> records;
-  for (std::size_t i = 0; i < flight.mask.size(); ++i) {
-    if (flight.mask[i] == Mask::none) records.push_back(i);
-  }
-  return records;
-}
 
 }  // namespace
 
@@ -51,7 +43,9 @@ void ComparisonPanels::add(const std::string& name, const std::string& title, co
 }
 
 ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(comparison) {
-  for (const FlightResiduals& flight : comparison.flights) samples_.add_flight(flight.samples, used(flight));
+  // A report shows no samples but the used ones.
+  for (const FlightResiduals& flight : comparison.flights)
+    samples_.add_flight(flight.samples, used_samples(flight.mask));
   using F = FlightResiduals;
   using V = std::vector<double>;
   for (std::size_t m = 0; m < comparison.models.size(); ++m) {

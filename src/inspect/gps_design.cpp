@@ -14,6 +14,7 @@
 #include "campaign/gps_system.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "residuals/masks.hpp"
 
 namespace pcor {
 
@@ -64,11 +65,8 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
       const auto reference = kind == GpsKind::wind ? wind_reference(model) : height_reference(model);
       const auto samples = std::make_shared<FlightSamples>(read_samples(flight, model, *reference));
       const Residuals residuals(samples, model, *reference);
-      std::vector<std::size_t> used;
-      for (std::size_t i = 0; i < residuals.size(); ++i) {
-        if (residuals.mask()[i] == Mask::none) used.push_back(i);
-      }
-      const GpsRows rows = gps_rows(kind, *samples, model, used, residuals.parameters().data(), requested);
+      const GpsRows rows = gps_rows(kind, *samples, model, used_samples(residuals.mask()),
+                                    residuals.parameters().data(), requested);
       if (rows.defect.rows() == 0) continue;
       const WhiteRows white = GpsNoise(kind).white(rows, Eigen::VectorXd::Zero(rows.rows.rows()));
       const auto columns = white.rows.leftCols(information.cols());
