@@ -64,13 +64,6 @@ class Plausibility {
     problems_.push_back({variable, std::move(kind), times, number, std::move(unit), std::move(action)});
   }
 
-  static double median_of(const std::vector<double>& a, const std::vector<double>& b,
-                          double (*of)(double, double)) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) values.push_back(of(a[i], b[i]));
-    return median(std::move(values));
-  }
-
   /// Values beyond the limits of a role are missing: usually their unit is not the stated one.
   void limits() {
     const VariableNaming& family = family_of(model_, flight_);
@@ -110,10 +103,12 @@ class Plausibility {
 
   void temperature_against_height() {
     const RecordedSeries temperature = read(Q::ambient_temperature);
-    const RecordedSeries altitude = read(Q::altitude);
+    const std::vector<double> altitude = read(Q::altitude).values;
     constexpr double maximum = 40.0;  // K: no air is so far from the standard atmosphere
-    const double excess = median_of(temperature.values, altitude.values,
-                                    [](double t, double h) { return t - standard_temperature(h); });
+    std::vector<double> excesses;
+    for (std::size_t i = 0; i < std::min(temperature.values.size(), altitude.size()); ++i)
+      excesses.push_back(temperature.values[i] - standard_temperature(altitude[i]));
+    const double excess = median(std::move(excesses));
     if (std::abs(excess) > maximum)
       add(temperature.variable, "temperature against height", excess, "K",
           "used unchanged; state its unit in the [units] of the model");
@@ -142,16 +137,13 @@ class Plausibility {
   }
 
   void angles() {
-    for (const Quantity role : {Q::heading, Q::ground_track, Q::pitch, Q::roll}) {
+    for (const Quantity role : {Q::heading, Q::ground_track}) {
       const RecordedSeries angle = read(role);
-      if (angle.values.empty()) continue;
       double maximum = 0.0;
       for (const double each : angle.values)
         maximum = std::isfinite(each) ? std::max(maximum, std::abs(each)) : maximum;
-      // The maximum heading is 6.28 in radians and 360 in degrees, unless the flight is one leg.
-      const bool is_turn = role == Q::heading || role == Q::ground_track;
-      const bool looks_like_radians = is_turn && maximum > 3.0 && maximum < 6.3;
-      if (looks_like_radians)
+      // The maximum is 6.28 in radians and 360 in degrees, unless the flight is one leg.
+      if (maximum > 3.0 && maximum < 6.3)
         add(angle.variable, "angle with a maximum typical of radians", maximum, "degree",
             fmt::format("used unchanged; if it is in radians, {} = \"radian\" in the [units] of the model",
                         info_of(role).name));
