@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include <pcor/base/message.hpp>
 #include <pcor/base/suggest.hpp>
 
 namespace pcor::internal {
@@ -75,8 +76,6 @@ std::string one_line(std::string_view text) {
   return line;
 }
 
-void put_one_line(std::string_view text, void (*put)(std::string_view)) { each_piece(text, put); }
-
 std::string shortened(std::string_view text, std::size_t maximum) {
   std::size_t letters = 0;
   std::string first;
@@ -94,3 +93,25 @@ std::string suggestion_text(std::string_view wrong, const Names& known) {
 }
 
 }  // namespace pcor::internal
+
+namespace pcor {
+
+using namespace internal;
+
+std::string sanitize_line(std::string_view message) {
+  constexpr std::size_t max_letters = 2000;
+  return shortened(one_line(message), max_letters);
+}
+
+void put_sanitized(std::string_view message, void (*put)(std::string_view)) { each_piece(message, put); }
+
+std::string shown_text(std::string_view text) {
+  std::string shown;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    shown += one_line(text.substr(0, end)) + "\n";
+    text.remove_prefix(end + 1);
+  }
+  return shown + one_line(text);
+}
+
+}  // namespace pcor

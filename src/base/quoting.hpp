@@ -15,9 +15,6 @@ using Names = std::vector<std::string>;
 /// or change the direction of writing, and bytes that are not UTF-8 become \x1b and the like.
 std::string one_line(std::string_view text);
 
-/// Puts the line in pieces, without allocation: for signal handlers.
-void put_one_line(std::string_view text, void (*put)(std::string_view));
-
 /// First characters of a text; a text with more than `maximum` characters ends with an ellipsis and its
 /// length.
 std::string shortened(std::string_view text, std::size_t maximum = 100);

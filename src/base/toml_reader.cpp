@@ -101,7 +101,7 @@ toml::table TomlReader::parse(std::string_view text) const {
   if (const std::optional<std::size_t> deep = place_of_deep_key(text)) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*deep), '\n');
     fail(Position{static_cast<toml::source_index>(line), 1},
-         fmt::format("a key has more than {} dots; use fewer nested tables", max_dots));
+         "a key has more than {} dots; use fewer nested tables", max_dots);
   }
   try {
     toml::table root = toml::parse(text, name_);
@@ -115,7 +115,7 @@ toml::table TomlReader::parse(std::string_view text) const {
 void TomlReader::refuse_crowd(const toml::node& node) const {
   const auto refuse_above = [&](std::size_t entries) {
     if (entries > max_entries)
-      fail(node, fmt::format("{} has {} entries; give at most {}", kind_of(node), entries, max_entries));
+      fail(node, "{} has {} entries; give at most {}", kind_of(node), entries, max_entries);
   };
   if (const toml::table* const table = node.as_table()) {
     refuse_above(table->size());
@@ -137,7 +137,7 @@ void TomlReader::fail(Position position, const std::string& what) const {
 }
 
 void TomlReader::refuse(const Entry& entry, const Names& known) const {
-  fail(entry.position, fmt::format("there is no {}; {}", unknown(entry), suggestion_text(entry.key, known)));
+  fail(entry.position, "there is no {}; {}", unknown(entry), suggestion_text(entry.key, known));
 }
 
 void TomlReader::refuse_unknown(const toml::table& table, const std::string& title,
@@ -162,11 +162,10 @@ void TomlReader::require_format(const toml::table& root, std::string_view what,
                                 std::string_view format) const {
   const std::optional<Entry> entry = entry_of(root, "format");
   if (!entry)
-    fail(Position{1, 1},
-         fmt::format("the file does not declare that it is {}; begin it with format = \"{}\"", what, format));
+    fail(Position{1, 1}, "the file does not declare that it is {}; begin it with format = \"{}\"", what,
+         format);
   if (const std::string given = text(*entry, quote(format)); given != format)
-    fail(*entry,
-         fmt::format("{} is not the format of {}; write format = \"{}\"", quote(given), what, format));
+    fail(*entry, "{} is not the format of {}; write format = \"{}\"", quote(given), what, format);
 }
 
 std::string TomlReader::wrong_kind(const Entry& entry, const std::string& requested) {
@@ -174,7 +173,7 @@ std::string TomlReader::wrong_kind(const Entry& entry, const std::string& reques
 }
 
 double TomlReader::finite(const toml::node& node, const std::string& what) const {
-  if (!node.is_number()) fail(node, fmt::format("{} is {}; give a number", what, kind_of(node)));
+  if (!node.is_number()) fail(node, "{} is {}; give a number", what, kind_of(node));
   const auto* whole = node.as_integer();
   const double value = whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
   if (!std::isfinite(value)) fail(node, what + " is not finite; give a finite number");
@@ -192,13 +191,10 @@ std::vector<double> TomlReader::numbers(const Entry& entry, const std::string& r
 std::pair<double, double> TomlReader::range(const Entry& entry) const {
   const std::string requested = "[lower, upper]";
   const std::vector<double> ends = numbers(entry, requested);
-  if (ends.size() != 2) {
-    fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), requested));
-  }
-  if (!(ends[0] < ends[1])) {
-    fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
-                            ends[0], ends[1], requested));
-  }
+  if (ends.size() != 2) fail(entry, "{} has {} numbers; give {}", called(entry), ends.size(), requested);
+  if (!(ends[0] < ends[1]))
+    fail(entry, "{}: the lower end {} is not below the upper end {}; give {}", called(entry), ends[0],
+         ends[1], requested);
   return {ends[0], ends[1]};
 }
 
@@ -219,9 +215,7 @@ std::string TomlReader::date(const Entry& entry) const {
   if (!day) {
     const std::string written = text(entry, requested);
     day = moment_in<toml::date>(written);
-    if (!day) {
-      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), quote(written), requested));
-    }
+    if (!day) fail(entry, "{}: {} is not a date; give {}", called(entry), quote(written), requested);
   }
   return fmt::format("{:04}-{:02}-{:02}", day->year, day->month, day->day);
 }

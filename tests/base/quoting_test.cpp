@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include <pcor/base/message.hpp>
+
 namespace pcor::internal {
 namespace {
 
@@ -21,7 +23,7 @@ TEST(OneLine, EscapesControlCharacters) {
 
 TEST(OneLine, IsTheSameInPieces) {
   static std::string line;
-  put_one_line("a\nb\xff\u20ac", [](std::string_view piece) { line += piece; });
+  put_sanitized("a\nb\xff\u20ac", [](std::string_view piece) { line += piece; });
   EXPECT_EQ(line, "a\\x0ab\\xff\u20ac");
 }
 
