@@ -11,10 +11,8 @@ using namespace internal;
 
 namespace internal {
 
-enum class Kind : std::uint8_t { part, failed, left };
-
 struct Message {
-  Kind kind = Kind::part;
+  bool is_last = false;  // its sender leaves
   std::uint64_t state = 0;
   std::string part{};
   // Fields of an error:
@@ -25,7 +23,7 @@ struct Message {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(kind, state, part, has_error, order, code, text);
+    archive(is_last, state, part, has_error, order, code, text);
   }
 };
 
@@ -34,7 +32,7 @@ struct Message {
 namespace {
 
 Message message_of(const Error& error, std::size_t order) {
-  Message message{Kind::failed};
+  Message message;
   message.has_error = true;
   message.order = order;
   message.code = error.code();
@@ -58,15 +56,14 @@ std::vector<Message> Communicator::talk(const Message& own) {
     throw parted_with_ ? *parted_with_ : Error(Error::Code::system, "another process of this run has ended");
   std::vector<Message> all;
   for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
-  has_parted_ =
-      std::any_of(all.begin(), all.end(), [](const Message& each) { return each.kind == Kind::left; });
+  has_parted_ = std::any_of(all.begin(), all.end(), [](const Message& each) { return each.is_last; });
   if (const Message* const error = first_error(all)) {
     const Error agreed(error->code, error->text);
     if (has_parted_) parted_with_ = agreed;
     throw agreed;
   }
   const bool agree = std::all_of(all.begin(), all.end(), [&all](const Message& each) {
-    return each.kind == all.front().kind && each.state == all.front().state;
+    return each.is_last == all.front().is_last && each.state == all.front().state;
   });
   if (!agree) {
     has_parted_ = true;
@@ -98,7 +95,7 @@ std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
   if (size() == 1) return error;
   if (has_parted_) return parted_with_ ? parted_with_ : error;
   Message last = error ? message_of(*error, 0) : Message{};
-  last.kind = Kind::left;
+  last.is_last = true;
   try {
     talk(last);
   } catch (const Error& of_all) {
