@@ -257,13 +257,11 @@ Report check_report(const Checks& checks) {
   report.columns.erase(std::remove_if(report.columns.begin(), report.columns.end(),
                                       [](const ReportColumn& column) { return !has_value(column.values); }),
                        report.columns.end());
+  const std::vector<std::size_t> bounds = flight_bounds(report);
   for (std::size_t i = 0; i < report.flight_names.size(); ++i) {
-    const std::size_t first = report.flight_starts[i];
-    const std::size_t end =
-        i + 1 < report.flight_starts.size() ? report.flight_starts[i + 1] : report.time.size();
     report.info.emplace_back(
-        "Flight", fmt::format("{}, {} to {} UTC", report.flight_names[i], utc_text(report.time[first]),
-                              utc_text(report.time[end - 1], "%H:%M:%S")));
+        "Flight", fmt::format("{}, {} to {} UTC", report.flight_names[i], utc_text(report.time[bounds[i]]),
+                              utc_text(report.time[bounds[i + 1] - 1], "%H:%M:%S")));
   }
   if (report.flight_names.size() < checks.flights.size())
     report.info.emplace_back("All flights", fmt::format("{}", fmt::join(checks.flights, ", ")));

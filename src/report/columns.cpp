@@ -28,6 +28,13 @@ bool meet(const std::vector<ReportColumn>& columns, const std::vector<std::strin
   return false;
 }
 
+std::vector<std::size_t> flight_bounds(const Report& report) {
+  std::vector<std::size_t> bounds = report.flight_starts;
+  if (bounds.empty() && !report.time.empty()) bounds.push_back(0);
+  bounds.push_back(report.time.size());
+  return bounds;
+}
+
 void add_if_present(Report& report, ReportColumn column) {
   if (has_value(column.values)) report.columns.push_back(std::move(column));
 }

@@ -13,6 +13,9 @@ const ReportColumn* column_named(const std::vector<ReportColumn>& columns, const
 /// Whether some sample has a value in all of these columns; false if one of them is absent.
 bool meet(const std::vector<ReportColumn>& columns, const std::vector<std::string>& names);
 
+/// First sample of each flight, and the number of samples.
+std::vector<std::size_t> flight_bounds(const Report& report);
+
 /// Names of the columns that a report has.
 std::vector<std::string> present(const Report& report, std::vector<std::string> names);
 

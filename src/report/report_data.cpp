@@ -18,6 +18,7 @@
 #include <variant>
 #include <vector>
 
+#include "report/columns.hpp"
 #include "report/report_data.hpp"
 
 namespace pcor {
@@ -141,19 +142,11 @@ void check_columns(const Report& report, const std::map<std::string, bool>& show
   }
 }
 
-// First sample of each flight, and the number of samples.
-std::vector<std::size_t> bounds_of(const Report& report) {
-  std::vector<std::size_t> bounds = report.flight_starts;
-  if (bounds.empty() && !report.time.empty()) bounds.push_back(0);
-  bounds.push_back(report.time.size());
-  return bounds;
-}
-
 // Flights with the time of their samples: `start` in seconds since 1970, and the milliseconds between
 // successive samples, beginning with the difference between the first one and the start.
 json flights(const Report& report) {
   constexpr double max_time = std::numeric_limits<std::uint32_t>::max();
-  const std::vector<std::size_t> bounds = bounds_of(report);
+  const std::vector<std::size_t> bounds = flight_bounds(report);
   json all = json::array();
   for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
     if (bounds[flight] == bounds[flight + 1]) continue;
@@ -194,7 +187,7 @@ json sums_json(const std::vector<WhatIfSums>& all) {
 // 64,000 of them; otherwise every second (third ...) of each flight, and its last one.
 std::vector<std::uint32_t> what_if_points(const WhatIfPanel& panel, const Report& report) {
   constexpr std::size_t max_points = 64000;
-  const std::vector<std::size_t> bounds = bounds_of(report);
+  const std::vector<std::size_t> bounds = flight_bounds(report);
   std::vector<std::vector<std::uint32_t>> known(bounds.size() - 1);
   std::size_t count = 0;
   for (std::size_t flight = 0; flight < known.size(); ++flight) {
@@ -277,7 +270,7 @@ struct ItemJson {
 /// Escapes characters that a terminal or a page would interpret.
 void show_texts(json& data) {
   if (data.is_string()) {
-    data = shown_text(data.get_ref<const std::string&>());
+    data = pcor::shown_text(data.get_ref<const std::string&>());
   } else if (data.is_structured()) {
     for (json& each : data) show_texts(each);
   }

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "report/columns.hpp"
+
 namespace pcor::internal {
 
 namespace {
@@ -26,14 +28,14 @@ std::vector<std::size_t> spread(std::vector<std::size_t> flights, std::size_t ma
 
 /// Keeps the records and intervals of some flights of a report.
 void show_only(Report& report, const std::vector<std::size_t>& flights) {
+  const std::vector<std::size_t> bounds = flight_bounds(report);
   std::vector<std::size_t> samples;
   std::vector<std::size_t> starts;
   std::vector<std::string> names;
   std::vector<ReportInterval> intervals;
   for (const std::size_t flight : flights) {
-    const std::size_t first = report.flight_starts[flight];
-    const std::size_t end =
-        flight + 1 < report.flight_starts.size() ? report.flight_starts[flight + 1] : report.time.size();
+    const std::size_t first = bounds[flight];
+    const std::size_t end = bounds[flight + 1];
     if (first == end) continue;
     starts.push_back(samples.size());
     names.push_back(report.flight_names[flight]);
