@@ -320,18 +320,16 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   }
   result.notes = notes_of_flights(notes, flights.size());
   if (result.masks[0] == 0) return result;
-  std::vector<bool> are_circular;
-  for (const Pairing& each : pairings) {
-    const std::string own = each.compared->model.variable_of(Quantity::static_pressure);
-    const std::string circular = circular_pressure(flights, each.compared->model, *each.reference);
-    are_circular.push_back(!circular.empty());
-    if (each.reference->model() == nullptr || circular.empty() || circular != own) continue;
-    result.notes.push_back(warning_note(
-        fmt::format("give a reference with another static pressure: {} uses {}, as the model "
-                    "does; the residual of '{}' is the difference of two laws and does not test it",
-                    each.reference->name(), own, each.compared->name)));
-  }
   for (std::size_t m = 0; m < pairings.size(); ++m) {
+    const auto& [compared, reference, rank] = pairings[m];
+    const std::string own = compared->model.variable_of(Quantity::static_pressure);
+    const std::string circular = circular_pressure(flights, compared->model, *reference);
+    if (reference->model() != nullptr && !circular.empty() && circular == own) {
+      result.notes.push_back(warning_note(
+          fmt::format("give a reference with another static pressure: {} uses {}, as the model "
+                      "does; the residual of '{}' is the difference of two laws and does not test it",
+                      reference->name(), own, compared->name)));
+    }
     add_variances(m, flights.share(), records, threads, parts);
     ModelSums sums;
     std::vector<PartStatistics> of_flights;
@@ -339,9 +337,9 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     const bool is_determined = sums.all.determines_level();
     for (const FlightPart& part : parts)
       of_flights.push_back({part.name, part.models[m].all.statistics(is_determined)});
-    result.models.push_back(comparison_of(pairings[m].compared->name, *pairings[m].reference, std::move(sums),
-                                          std::move(of_flights)));
-    result.models.back().is_circular = are_circular[m];
+    result.models.push_back(
+        comparison_of(compared->name, *reference, std::move(sums), std::move(of_flights)));
+    result.models.back().is_circular = !circular.empty();
   }
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;
