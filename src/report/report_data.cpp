@@ -50,6 +50,30 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCoefficient, name, unit, given, start, 
                                    argument)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIfCommands, add, model, with, refit, stem)
 
+// The page reads the products as bytes of little-endian doubles.
+inline void to_json(nlohmann::json& json, const WhatIfSums& sums) {
+  json = {{"products", internal::report::base64(sums.products.data(), sums.products.size() * sizeof(double))},
+          {"samples", sums.samples}};
+}
+
+inline void to_json(nlohmann::json& json, const WhatIfWeights& weights) {
+  json = {{"effects", weights.effects},
+          {"parts", weights.parts},
+          {"scores", WhatIfSums{weights.score_covariance, 0.0}}};
+}
+
+inline void to_json(nlohmann::json& json, const WhatIfEffect& effect) {
+  json = {{"id", effect.id},
+          {"title", effect.title},
+          {"why", effect.why},
+          {"standsFor", effect.stands_for ? nlohmann::json(*effect.stands_for) : nlohmann::json()},
+          {"first", effect.first},
+          {"count", effect.count},
+          {"argument", effect.argument},
+          {"isFormula", effect.is_formula},
+          {"note", effect.note}};
+}
+
 }  // namespace pcor
 
 namespace pcor::internal::report {
@@ -171,18 +195,6 @@ json flights(const Report& report) {
   return all;
 }
 
-// The page reads the products as bytes of little-endian doubles.
-json sums_json(const WhatIfSums& sums) {
-  return {{"products", base64(sums.products.data(), sums.products.size() * sizeof(double))},
-          {"samples", sums.samples}};
-}
-
-json sums_json(const std::vector<WhatIfSums>& all) {
-  json sums = json::array();
-  for (const WhatIfSums& each : all) sums.push_back(sums_json(each));
-  return sums;
-}
-
 // Samples at which the columns are kept, of those with a value in all columns: all if the report has up to
 // 64,000 of them; otherwise every second (third ...) of each flight, and its last one.
 std::vector<std::uint32_t> what_if_points(const WhatIfPanel& panel, const Report& report) {
@@ -229,34 +241,18 @@ struct ItemJson {
     return panel;
   }
   json operator()(const WhatIfPanel& panel) const {
-    json effects = json::array();
-    for (const WhatIfEffect& each : panel.effects)
-      effects.push_back({{"id", each.id},
-                         {"title", each.title},
-                         {"why", each.why},
-                         {"standsFor", each.stands_for ? json(*each.stands_for) : json()},
-                         {"first", each.first},
-                         {"count", each.count},
-                         {"argument", each.argument},
-                         {"isFormula", each.is_formula},
-                         {"note", each.note}});
-    json weights = json::array();
-    for (const WhatIfWeights& each : panel.weights)
-      weights.push_back({{"effects", each.effects},
-                         {"parts", sums_json(each.parts)},
-                         {"scores", sums_json(WhatIfSums{each.score_covariance, 0.0})}});
     json item{{"residual", panel.residual},
               {"start", panel.start},
               {"isStartFitted", panel.is_start_fitted},
               {"coefficients", panel.coefficients},
               {"own", panel.own},
-              {"effects", std::move(effects)},
+              {"effects", panel.effects},
               {"x_choices", panel.x_choices},
               {"autocorrelation_time", panel.autocorrelation_time},
-              {"weights", std::move(weights)},
-              {"alike", sums_json(panel.alike)},
-              {"outliers", sums_json(panel.outliers)},
-              {"heldOut", sums_json(panel.held_out)},
+              {"weights", panel.weights},
+              {"alike", panel.alike},
+              {"outliers", panel.outliers},
+              {"heldOut", panel.held_out},
               {"noise", panel.noise},
               {"noiseLabel", panel.noise_label},
               {"commands", panel.commands}};
