@@ -229,17 +229,16 @@ Layer make_layer(const FlightAir& air, const std::vector<double>& heights, std::
                                  0.5 * (air.gas_constant[i - 1] + air.gas_constant[i]));
     layer.s2 += step;
     layer.s3 += step * 0.5 * (1.0 / air.temperature[i - 1] + 1.0 / air.temperature[i]);
-    layer.east += passed * speed_at(air.east_speed, i);
-    layer.north += passed * speed_at(air.north_speed, i);
-  }
-  if (!air.east_speed.empty()) return layer;
-  // Without a ground velocity, distance and direction are computed from airspeed and heading.
-  for (std::size_t i = first + 1; i <= last; ++i) {
-    const std::vector<double>& headings = air.samples->motion.heading;
-    const double angle = speed_at(headings, i) * constants::radians_per_degree;
-    const double way = (air.time()[i] - air.time()[i - 1]) * speed_at(air.airspeed, i);
-    layer.east += way * std::sin(angle);
-    layer.north += way * std::cos(angle);
+    if (air.east_speed.empty()) {
+      // Without a ground velocity, distance and direction are computed from airspeed and heading.
+      const double angle = speed_at(air.samples->motion.heading, i) * constants::radians_per_degree;
+      const double way = passed * speed_at(air.airspeed, i);
+      layer.east += way * std::sin(angle);
+      layer.north += way * std::cos(angle);
+    } else {
+      layer.east += passed * speed_at(air.east_speed, i);
+      layer.north += passed * speed_at(air.north_speed, i);
+    }
   }
   return layer;
 }

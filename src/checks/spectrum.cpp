@@ -84,16 +84,13 @@ Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
 Estimate fall_of(const Spectrum& spectrum) {
   std::vector<double> slopes;
   for (const std::vector<double>& each : spectrum.periodograms) {
-    std::vector<double> x;
-    std::vector<double> y;
+    PairMoments logarithms;
     // The last frequency has another distribution.
     for (std::size_t k = segment_length / 8 - 1; k + 1 < segment_length / 2; ++k) {
-      if (!(each[k] > 0.0)) continue;
-      x.push_back(std::log(spectrum.frequency(k)));
-      y.push_back(std::log(each[k]));
+      if (each[k] > 0.0) logarithms.add(std::log(spectrum.frequency(k)), std::log(each[k]));
     }
-    const LineFit line = ordinary_fit(x, y);
-    if (std::isfinite(line.slope)) slopes.push_back(line.slope);
+    const double slope = ordinary_fit(logarithms).slope;
+    if (std::isfinite(slope)) slopes.push_back(slope);
   }
   if (slopes.size() < 2) return {nan, nan};
   const auto count = static_cast<double>(slopes.size());
