@@ -123,16 +123,14 @@ void ComparisonPanels::add_panels() {
 }
 
 void ComparisonPanels::add_pairs() {
-  const auto note = [](const LineFit& fit) {
-    return fmt::format(
+  const auto pair = [&](const char* title, const char* caption, const char* x, const char* y,
+                        const LineFit& fit) {
+    const std::string numbers = fmt::format(
         "Slope {:.5f}, offset {:.3f} hPa, rms {:.3f} hPa, mean difference {:+.3f} hPa over {} samples; the "
         "report of check states their errors, which allow for autocorrelation.",
         fit.slope, fit.offset, fit.rms, fit.mean_difference, fit.samples);
-  };
-  const auto pair = [&](const char* title, const std::string& caption, const char* x, const char* y,
-                        const LineFit& fit) {
     const std::vector<ReportLine> lines{{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
-    report().items.emplace_back(PairPanel{title, caption + note(fit), x, y, lines});
+    report().items.emplace_back(PairPanel{title, caption + numbers, x, y, lines});
   };
   if (comparison_.total_pressure) {
     add("total", "model's system", &FlightResiduals::total_pressure);

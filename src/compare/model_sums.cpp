@@ -90,11 +90,7 @@ void ModelSums::add(const ModelSums& other) {
   reference_defect += other.reference_defect;
   reference_defect_squares += other.reference_defect_squares;
   pressures.add(other.pressures);
-  if (doubt.size() == 0) {
-    doubt = other.doubt;
-  } else {
-    doubt += other.doubt;
-  }
+  doubt = doubt.size() == 0 ? other.doubt : Eigen::VectorXd(doubt + other.doubt);
   for (std::size_t r = 0; r < regime_count; ++r) regimes[r].add(other.regimes[r]);
   for (std::size_t b = 0; b < bandings.size(); ++b) {
     for (const auto& [band, sums] : other.bands[b]) bands[b][band].add(sums);
