@@ -196,19 +196,15 @@ class Look {
   }
 
   void find_candidates() {
-    evidence_ = role_candidates(flight_);
+    result_.candidates = role_candidates(flight_);
     tell_heights_apart();
-    for (const auto& [series, candidates] : evidence_) {
-      for (const RoleCandidate& each : candidates)
-        result_.candidates[series].push_back({each.variable, each.score, each.why});
-    }
   }
 
   /// A pressure altitude is not a height of GPS under any name; a height that may be either is not sure.
   void tell_heights_apart() {
     constexpr std::string_view series = "altitude";
     std::vector<StatedPressure> pressures = static_pressures_of(flight_, ModelDefinition());
-    for (const RoleCandidate& candidate : evidence_["static_pressure"]) {
+    for (const RoleCandidate& candidate : result_.candidates["static_pressure"]) {
       if (std::none_of(pressures.begin(), pressures.end(),
                        [&](const StatedPressure& each) { return each.variable == candidate.variable; }))
         pressures.push_back({candidate.variable, family_.unit_of(candidate.variable)});
@@ -238,14 +234,14 @@ class Look {
     for (const std::string& name : family_.names_of(series)) {
       if (has_values(flight_, name, std::string(info.unit), family_.unit_of(name))) evidence_of(name);
     }
-    std::vector<RoleCandidate>& candidates = evidence_[std::string(series)];
+    std::vector<RoleCandidate>& candidates = result_.candidates[std::string(series)];
     for (RoleCandidate& each : candidates) {
       if (!is_convertible(flight_.variable(each.variable).units, std::string(info.unit))) continue;
       const HeightEvidence evidence = evidence_of(each.variable);
       if (evidence.kind == HeightEvidence::Kind::gps) continue;
       each.why += "; " + to_string(evidence);
       if (evidence.kind == HeightEvidence::Kind::pressure_altitude) {
-        evidence_["other_altitude"].push_back(each);
+        result_.candidates["other_altitude"].push_back(each);
       } else if (!says_geometric(flight_.variable(each.variable))) {
         each.score = std::min(each.score, sure_score - 0.01);
         result_.notes.push_back(fmt::format(
@@ -260,10 +256,10 @@ class Look {
                                     }),
                      candidates.end());
     for (const char* const name : {"altitude", "other_altitude", "static_pressure"}) {
-      const auto found = evidence_.find(name);
-      if (found == evidence_.end()) continue;
+      const auto found = result_.candidates.find(name);
+      if (found == result_.candidates.end()) continue;
       if (found->second.empty()) {
-        evidence_.erase(found);
+        result_.candidates.erase(found);
         continue;
       }
       std::stable_sort(found->second.begin(), found->second.end(),
@@ -282,8 +278,8 @@ class Look {
 
   const std::vector<RoleCandidate>& candidates_for(const std::string& series) const {
     static const std::vector<RoleCandidate> none;
-    const auto found = evidence_.find(series);
-    return found == evidence_.end() ? none : found->second;
+    const auto found = result_.candidates.find(series);
+    return found == result_.candidates.end() ? none : found->second;
   }
 
   /// Finds the pressure pair of a file that matches no aircraft family. The names then apply to this flight
@@ -312,12 +308,12 @@ class Look {
 
   /// The error; if one of the two pressures was found, its name and the next step.
   std::string what_pressures_lack(const Error& error) const {
-    const bool has_static = evidence_.count("static_pressure") != 0;
-    const bool has_dynamic = evidence_.count("dynamic_pressure") != 0;
+    const bool has_static = result_.candidates.count("static_pressure") != 0;
+    const bool has_dynamic = result_.candidates.count("dynamic_pressure") != 0;
     if (!roles_.empty() || has_static == has_dynamic) return error.what();
     const std::string found = has_static ? "static" : "dynamic";
     const std::string missing = has_static ? "dynamic" : "static";
-    const RoleCandidate& candidate = evidence_.at(found + "_pressure").front();
+    const RoleCandidate& candidate = result_.candidates.at(found + "_pressure").front();
     return fmt::format(
         "{}: {} is a {} pressure ({}), but no {} pressure of a known name, unit and size was found; get the "
         "file with the {} pressure, or name it in the [variables] of a model",
@@ -365,7 +361,7 @@ class Look {
       used.insert(role.others.begin(), role.others.end());
     }
     for (const auto& [series, candidates] : result_.candidates) {
-      for (const InspectedCandidate& each : candidates) used.insert(each.variable);
+      for (const RoleCandidate& each : candidates) used.insert(each.variable);
     }
     std::vector<std::string> ignored;
     for (const std::string& name : flight_.variables()) {
@@ -479,7 +475,7 @@ class Look {
           found.empty() && candidate != nullptr) {
         add_role(series, {candidate->variable});
         if (!is_processed(candidate->variable)) result_.roles.back().why = candidate->why;
-        for (const RoleCandidate& each : evidence_.at(series)) {
+        for (const RoleCandidate& each : result_.candidates.at(series)) {
           if (each.variable != candidate->variable) result_.roles.back().others.push_back(each.variable);
         }
       } else if (found.empty()) {
@@ -562,7 +558,6 @@ class Look {
   Flight flight_;
   std::string roles_;
   const VariableNaming& family_;
-  std::map<std::string, std::vector<RoleCandidate>> evidence_;
   std::set<std::string> pressure_altitudes_;
   std::set<std::string> impossible_heights_;
   Inspection result_;

@@ -6,15 +6,9 @@
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
+#include <pcor/roles/role_candidate.hpp>
 
 namespace pcor::internal {
-
-/// A variable that may have a role, by the evidence in its file.
-struct RoleCandidate {
-  std::string variable{};
-  double score = 0.0;  ///< 0 to 1, increasing with the evidence
-  std::string why{};   ///< "its name is 'static pressure', in hPa, with 560 to 960"
-};
 
 /// Minimum score at which a candidate is accepted if no other has a similar score.
 inline constexpr double sure_score = 0.85;

@@ -16,6 +16,7 @@
 #include <pcor/residuals/samples.hpp>
 #include <pcor/residuals/statistics.hpp>
 #include <pcor/roles/model_candidates.hpp>
+#include <pcor/roles/role_candidate.hpp>
 
 namespace pcor {
 
@@ -91,19 +92,7 @@ void describe(const Problem& self, Field& field) {
   field("action", self.action, "action taken, and how to change it");
 }
 
-/// Variable that may match a role, by name, long name, unit and values.
-struct InspectedCandidate {
-  std::string variable;
-  double score = 0.0;  ///< 0 to 1
-  std::string why;
-};
-
-template <class Field>
-void describe(const InspectedCandidate& self, Field& field) {
-  field("variable", self.variable, "variable that may match the role");
-  field("score", self.score, "strength of the evidence, 0 to 1");
-  field("why", self.why, "evidence");
-}
+using InspectedCandidate = RoleCandidate;
 
 /// Role without a variable, and the consequence.
 struct MissingRole {
