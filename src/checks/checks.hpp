@@ -46,7 +46,8 @@ inline bool has_step(const CheckedFlight& flight, double step) {
   return std::abs(flight.air.step() - step) < 0.01 * step;
 }
 
-/// Each check receives all flights, and returns a result without its name, whether it was run or not.
+/// Each check receives all flights, one or more, and returns a result without its name, whether it was run or
+/// not.
 CheckResult check_total_pressure(const CheckedFlights& flights);
 CheckResult check_static_pressure(const CheckedFlights& flights);
 CheckResult check_reverse_heading(const CheckedFlights& flights);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <pcor/base/utc.hpp>
 #include "checks/flown.hpp"
@@ -19,12 +18,13 @@ constexpr double min_thermometer_error = 0.3;
 /// A line with a larger error at 0 degC, K, is not reported.
 constexpr double max_useful_error = 1.0;
 
-/// Reason why a flight has no layers; empty if it has layers.
-std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
+/// Finds the layers of a flight. @return the reason if it has none, otherwise an empty text
+std::string find_layers_of(const FlightAir& air, FlightLayers& found) {
   if (air.temperature.empty())
     return "no thermometer is known; give a model (-m) with recovery_temperature "
            "or ambient_temperature in [variables]";
   if (std::string trouble = height_problem(air); !trouble.empty()) return trouble;
+  found = find_layers(air);
   if (!found.layers.empty()) return "";
   const LayerOptions options;
   return fmt::format(
@@ -84,37 +84,27 @@ void add_column(const CheckedFlights& flights, const std::vector<FlightLayers>& 
 CheckResult check_layers(const CheckedFlights& flights) {
   CheckResult result;
   std::vector<FlightLayers> all;
-  std::string trouble;
   for (const CheckedFlight& flight : flights) {
     FlightLayers found;
-    if (!flight.air.temperature.empty() && height_problem(flight.air).empty())
-      found = find_layers(flight.air);
+    const std::string reason = find_layers_of(flight.air, found);
     found.flight = flight.air.samples->name;
-    const std::string reason = trouble_with(flight.air, found);
-    if (!reason.empty()) {
-      if (trouble.empty()) trouble = fmt::format("{}: {}", found.flight, reason);
-      result.notes.push_back(fmt::format("{}: {}", found.flight, reason));
-      found.layers.clear();
-    }
+    if (!reason.empty()) result.notes.push_back(fmt::format("{}: {}", found.flight, reason));
     for (const Note& note : found.notes)
       result.notes.emplace_back(note.severity, fmt::format("{}: {}", found.flight, note.text));
     all.push_back(std::move(found));
   }
   const LayerFit fit = fit_layers(all);
-  if (fit.layers == 0) return not_run(trouble.empty() ? "there is no flight" : trouble);
+  if (fit.layers == 0) return not_run(result.notes.front().text);  // the reason of the first flight
 
   std::vector<TestStatistic> numbers{judged(fit.offset, min_thermometer_error, "K", "thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
                   fit.layers, fit.layers == 1 ? "" : "s", with_error(fit.offset, "K"));
-  double coldest = std::numeric_limits<double>::infinity();
-  double warmest = -coldest;
+  std::vector<double> temperatures;
   for (const FlightLayers& flight : all) {
-    for (const Layer& layer : flight.layers) {
-      coldest = std::min(coldest, layer.measured_temperature());
-      warmest = std::max(warmest, layer.measured_temperature());
-    }
+    for (const Layer& layer : flight.layers) temperatures.push_back(layer.measured_temperature());
   }
+  const auto [coldest, warmest] = range_of(temperatures);
   const double range = warmest - coldest;
   const std::string span =
       fmt::format("{:.0f} to {:.0f} degC", coldest - constants::ice_point, warmest - constants::ice_point);

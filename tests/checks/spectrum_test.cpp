@@ -118,7 +118,6 @@ TEST(SpectrumCheck, UnusedFlightsAreThoseWithTheSeries) {
 }
 
 TEST(SpectrumCheck, ReasonForNoResultIsReported) {
-  EXPECT_FALSE(check_spectrum({}).ran);
   std::vector<double> holes = white(4000, 0.2, 5);
   for (std::size_t i = 0; i < holes.size(); i += 200) holes[i] = std::numeric_limits<double>::quiet_NaN();
   const CheckResult result = check_spectrum({made(holes)});
