@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <pcor/base/error.hpp>
@@ -62,23 +63,15 @@ struct Field {
   std::vector<Pairing> pairings{};
 };
 
-/// Ranks the models by name, so that results do not depend on the order of the options.
-std::vector<std::size_t> by_name(const std::vector<ComparedModel>& models) {
-  std::vector<std::pair<std::string, std::string>> keys;
-  for (const ComparedModel& each : models) keys.emplace_back(each.name, write_model(each.model));
-  std::vector<std::size_t> order(models.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
-  return order;
-}
-
 /// Models by reference; first those with the first reference of the first model by name.
 std::vector<Field> fields_of(const std::vector<ComparedModel>& models) {
+  // Ranked by name and content, so that results do not depend on the order of the options.
+  std::vector<std::tuple<std::string, std::string, const ComparedModel*>> ranked;
+  for (const ComparedModel& each : models) ranked.emplace_back(each.name, write_model(each.model), &each);
+  std::sort(ranked.begin(), ranked.end());
   std::vector<Field> fields;
-  const std::vector<std::size_t> order = by_name(models);
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const ComparedModel& model = models[order[rank]];
+  for (std::size_t rank = 0; rank < ranked.size(); ++rank) {
+    const ComparedModel& model = *std::get<const ComparedModel*>(ranked[rank]);
     std::map<std::string, std::size_t> met;
     for (const std::shared_ptr<const Reference>& reference : model.references) {
       const std::string name = reference->name();
@@ -93,7 +86,7 @@ std::vector<Field> fields_of(const std::vector<ComparedModel>& models) {
   for (Field& field : fields) {
     // In the order in which the models are given.
     std::sort(field.pairings.begin(), field.pairings.end(),
-              [&order](const Pairing& a, const Pairing& b) { return order[a.rank] < order[b.rank]; });
+              [](const Pairing& a, const Pairing& b) { return a.compared < b.compared; });
   }
   return fields;
 }
