@@ -25,8 +25,8 @@ struct Flown {
   std::vector<double> of(const std::vector<double>& series) const;
   double mean(const std::vector<double>& series) const;  ///< Mean of a series; NaN if all values are missing
   double step() const { return flight->air.step(); }
-  /// Regression of `y` on series `x`, all at the samples, with a constant (coefficient 0) and a drift in time
-  /// (coefficient 1); all columns but the constant are less their means.
+  /// Regression of `y` on series `x`, all at the samples. Coefficient 0 is a constant, coefficient 1 a drift
+  /// in time; the means of time and series are subtracted first.
   LeastSquares regression(const std::vector<double>& y, const std::vector<std::vector<double>>& x) const;
   /// Name like "rf05.nc, 2011-11-17 22:51:00 to 22:53:00".
   std::string location() const;
