@@ -72,42 +72,38 @@ class Integration {
 
   /// Advances the integral to sample `i`; restarts after a gap.
   void advance(std::size_t i) {
-    if (!has_value(i)) {
-      if (going_ && air_.time()[i] - air_.time()[last_] > max_bridge) going_ = false;
-      return;
-    }
-    if (going_) {
-      const double across = air_.time()[i] - air_.time()[last_];
-      const double step = step_between(last_, i);
-      if (across > max_bridge || std::isnan(step)) {
-        going_ = false;
-      } else {
-        const double before = air_.temperature[last_] - constants::ice_point;
-        const double here = air_.temperature[i] - constants::ice_point;
-        const double mean = 0.5 * (before + here) + constants::ice_point;
-        height_ += step * mean;
-        add_errors(shares_at(i), step, mean, air_.gas_constant[i] * mean / constants::standard_gravity);
-        // The thickness is proportional to R_a, whose excess over dry air is due to the vapour.
-        const double dry =
-            hydrostatic_step(air_.pressure[last_], air_.pressure[i], dry_air<double>().gas_constant);
-        columns_[with_vapor] += (step - dry) * mean;
-        double power_before = 1.0;
-        double power_here = 1.0;
-        for (Eigen::Index k = 0; k < lasting; ++k) {
-          columns_[k] += step * 0.5 * (power_before + power_here);
-          power_before *= before;
-          power_here *= here;
-        }
-      }
-    }
-    if (!going_) {
-      going_ = true;
+    if (going_ && air_.time()[i] - air_.time()[last_] > max_bridge) going_ = false;
+    if (!has_value(i)) return;
+    const double step = going_ ? step_between(last_, i) : nan;
+    if (std::isnan(step)) {
       starts_ = true;
       height_ = 0.0;
       columns_.setZero();
       last_shares_ = shares_at(i);
+    } else {
+      add_step(i, step);
     }
+    going_ = true;
     last_ = i;
+  }
+
+  void add_step(std::size_t i, double step) {
+    const double before = air_.temperature[last_] - constants::ice_point;
+    const double here = air_.temperature[i] - constants::ice_point;
+    const double mean = 0.5 * (before + here) + constants::ice_point;
+    height_ += step * mean;
+    add_errors(shares_at(i), step, mean, air_.gas_constant[i] * mean / constants::standard_gravity);
+    // The thickness is proportional to R_a, whose excess over dry air is due to the vapour.
+    const double dry =
+        hydrostatic_step(air_.pressure[last_], air_.pressure[i], dry_air<double>().gas_constant);
+    columns_[with_vapor] += (step - dry) * mean;
+    double power_before = 1.0;
+    double power_here = 1.0;
+    for (Eigen::Index k = 0; k < lasting; ++k) {
+      columns_[k] += step * 0.5 * (power_before + power_here);
+      power_before *= before;
+      power_here *= here;
+    }
   }
 
   /// Relative pressure change of each error of one unit. If the angle is missing, its previous value is used.
@@ -169,11 +165,11 @@ void mark_steps(std::vector<Point>& points, HeightRecord& record) {
     Point point = points[i];
     if (!point.starts_segment && !kept.empty() && std::abs(point.excess - kept.back().excess) > limit) {
       std::size_t end = i + 1;
-      while (end < points.size() && end - i < max_spike && !points[end].starts_segment &&
-             std::abs(points[end].excess - kept.back().excess) > limit)
-        ++end;
-      const bool comes_back = end < points.size() && end - i < max_spike && !points[end].starts_segment;
-      if (comes_back) {
+      const auto may_come_back = [&] {
+        return end < points.size() && end - i < max_spike && !points[end].starts_segment;
+      };
+      while (may_come_back() && std::abs(points[end].excess - kept.back().excess) > limit) ++end;
+      if (may_come_back()) {
         record.height_spikes += end - i;
         i = end - 1;
         continue;
@@ -201,103 +197,77 @@ Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
   if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
   if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
   const std::vector<double>& headings = air.samples->motion.heading;
-  if (headings.empty() || air.airspeed.empty()) return {nan, nan};
+  if (headings.empty()) return {nan, nan};
   const double heading = headings[i] * constants::radians_per_degree;
   return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
 }
 
-/// Displacement from the first sample, m, to the east and north. Missing velocities are replaced by the last
-/// one.
-struct Way {
-  std::vector<double> east;
-  std::vector<double> north;
-
-  explicit Way(const FlightAir& air) : east(air.size()), north(air.size()) {
-    Eigen::Vector2d here = Eigen::Vector2d::Zero();
-    Eigen::Vector2d last = Eigen::Vector2d::Zero();
-    for (std::size_t i = 0; i < air.size(); ++i) {
-      Eigen::Vector2d now = velocity(air, i);
-      if (now.hasNaN()) now = last;
-      if (i > 0) here += 0.5 * (last + now) * (air.time()[i] - air.time()[i - 1]);
-      last = now;
-      east[i] = here[0];
-      north[i] = here[1];
-    }
+/// Displacement from the first sample to each, m, to the east and north. Missing velocities are replaced by
+/// the last one.
+std::vector<Eigen::Vector2d> way_flown(const FlightAir& air) {
+  std::vector<Eigen::Vector2d> way(air.size(), Eigen::Vector2d::Zero());
+  Eigen::Vector2d last = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    Eigen::Vector2d now = velocity(air, i);
+    if (now.hasNaN()) now = last;
+    if (i > 0) way[i] = way[i - 1] + 0.5 * (last + now) * (air.time()[i] - air.time()[i - 1]);
+    last = now;
   }
-};
+  return way;
+}
 
-/// Sums over a block.
-class BlockMeans {
- public:
-  BlockMeans(const FlightAir& air, const Way& way) : air_(air), way_(way) {}
+using PointIterator = std::vector<Point>::const_iterator;
 
-  void add(const Point& point) {
-    const std::size_t i = point.sample;
-    if (block_.samples == 0) {
-      block_.starts_segment = point.starts_segment;
-      first_ = i;
-    }
-    ++block_.samples;
-    last_ = i;
-    block_.time += air_.time()[i] - air_.time()[first_];
-    block_.excess += point.excess;
-    block_.columns += point.columns;
-    block_.east += way_.east[i];
-    block_.north += way_.north[i];
-    block_.height += air_.geopotential_height[i];
-    block_.pressure += air_.pressure[i];
-    block_.temperature += air_.temperature[i] - constants::ice_point;
+/// Means over consecutive points.
+HeightBlock block_of(const FlightAir& air, const std::vector<Eigen::Vector2d>& way, PointIterator first,
+                     PointIterator end) {
+  HeightBlock block;
+  block.starts_segment = first->starts_segment;
+  block.samples = static_cast<std::size_t>(end - first);
+  const double first_time = air.time()[first->sample];
+  for (auto point = first; point != end; ++point) {
+    const std::size_t i = point->sample;
+    block.time += air.time()[i] - first_time;
+    block.excess += point->excess;
+    block.columns += point->columns;
+    block.east += way[i][0];
+    block.north += way[i][1];
+    block.height += air.geopotential_height[i];
+    block.pressure += air.pressure[i];
+    block.temperature += air.temperature[i] - constants::ice_point;
   }
-
-  std::size_t first() const { return first_; }
-  std::size_t samples() const { return block_.samples; }
-
-  HeightBlock take() {
-    HeightBlock result = block_;
-    const auto n = static_cast<double>(block_.samples);
-    for (double* value : {&result.time, &result.excess, &result.east, &result.north, &result.height,
-                          &result.pressure, &result.temperature})
-      *value /= n;
-    result.columns /= n;
-    result.time += air_.time()[first_];
-    result.length = n * air_.step();
-    const double kelvin = result.temperature + constants::ice_point;
-    result.metres_per_hpa =
-        air_.gas_constant[last_] * kelvin / (constants::standard_gravity * result.pressure);
-    block_ = {};
-    return result;
-  }
-
- private:
-  const FlightAir& air_;
-  const Way& way_;
-  HeightBlock block_;
-  std::size_t first_ = 0;
-  std::size_t last_ = 0;
-};
+  const auto n = static_cast<double>(block.samples);
+  for (double* value : {&block.time, &block.excess, &block.east, &block.north, &block.height, &block.pressure,
+                        &block.temperature})
+    *value /= n;
+  block.columns /= n;
+  block.time += first_time;
+  block.length = n * air.step();
+  const double kelvin = block.temperature + constants::ice_point;
+  block.metres_per_hpa =
+      air.gas_constant[(end - 1)->sample] * kelvin / (constants::standard_gravity * block.pressure);
+  return block;
+}
 
 /// Removes blocks with slow climb; the remaining parts of a climb are segments.
 void keep_climbs(std::vector<HeightBlock>& blocks, double min_rate) {
   if (min_rate <= 0.0) return;
   std::vector<HeightBlock> kept;
-  bool excluded = true;
-  double direction = 0.0;
+  double last = 0.0;  // direction of the block before; 0 if it is removed
   for (HeightBlock block : blocks) {
-    const bool climbs = std::abs(block.climb) >= min_rate;
-    if (climbs) {
-      const double now = block.climb > 0.0 ? 1.0 : -1.0;
-      block.starts_segment = block.starts_segment || excluded || now != direction;
-      direction = now;
+    const double direction = std::abs(block.climb) >= min_rate ? std::copysign(1.0, block.climb) : 0.0;
+    if (direction != 0.0) {
+      block.starts_segment = block.starts_segment || direction != last;
       kept.push_back(block);
     }
-    excluded = !climbs;
+    last = direction;
   }
   blocks = std::move(kept);
 }
 
 void find_climbs(std::vector<HeightBlock>& blocks) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const std::size_t before = blocks[i].starts_segment || i == 0 ? i : i - 1;
+    const std::size_t before = blocks[i].starts_segment ? i : i - 1;
     const std::size_t after = i + 1 < blocks.size() && !blocks[i + 1].starts_segment ? i + 1 : i;
     if (after == before) continue;
     blocks[i].climb =
@@ -333,19 +303,19 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
                     name));
 
   record.way = way_known(air);
-  const Way way(air);
-  BlockMeans means(air, way);
-  const auto finish = [&] {
-    if (means.samples() > 0) record.blocks.push_back(means.take());
-  };
-  for (const Point& point : points) {
-    const bool full = means.samples() > 0 &&
-                      air.time()[point.sample] - air.time()[means.first()] >= block_length - 0.5 * air.step();
-    if (point.starts_segment || full) finish();
-    if (record.way == WayKnown::over_ground && !has_ground_velocity(air, point.sample)) ++record.unknown_ways;
-    means.add(point);
+  const std::vector<Eigen::Vector2d> way = way_flown(air);
+  PointIterator begin = points.begin();
+  for (PointIterator point = begin; point != points.end(); ++point) {
+    const bool is_full =
+        air.time()[point->sample] - air.time()[begin->sample] >= block_length - 0.5 * air.step();
+    if (point != begin && (point->starts_segment || is_full)) {
+      record.blocks.push_back(block_of(air, way, begin, point));
+      begin = point;
+    }
+    if (record.way == WayKnown::over_ground && !has_ground_velocity(air, point->sample))
+      ++record.unknown_ways;
   }
-  finish();
+  record.blocks.push_back(block_of(air, way, begin, points.end()));
   find_climbs(record.blocks);
   keep_climbs(record.blocks, options.min_climb_rate);
 
@@ -353,9 +323,7 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   double highest = -lowest;
   record.min_temperature = lowest;
   record.max_temperature = highest;
-  for (std::size_t i = 0; i < record.blocks.size(); ++i) {
-    HeightBlock& block = record.blocks[i];
-    if (i == 0) block.starts_segment = true;
+  for (const HeightBlock& block : record.blocks) {
     record.segments += block.starts_segment ? 1 : 0;
     record.samples += block.samples;
     lowest = std::min(lowest, block.height);
