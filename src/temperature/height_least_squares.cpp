@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -50,19 +51,16 @@ std::vector<double> height_differences(const HeightRecord& record, const std::ve
 
 double samples_as_one(const HeightRecord& record, const std::vector<double>& coefficients) {
   const std::vector<double> left = height_differences(record, coefficients);
-  double squares = 0.0;
-  for (const double height : left) squares += height * height;
-  double samples = 0.0;
-  for (const HeightBlock& block : record.blocks) samples += static_cast<double>(block.samples);
+  const double squares = std::inner_product(left.begin(), left.end(), left.begin(), 0.0);
   // To the first lag without correlation: heights about their mean have negative ones beyond.
   double as_one = 1.0;
   for (std::size_t lag = 1; lag < left.size(); ++lag) {
-    double products = 0.0;
-    for (std::size_t i = lag; i < left.size(); ++i) products += left[i] * left[i - lag];
+    const double products =
+        std::inner_product(left.data() + lag, left.data() + left.size(), left.data(), 0.0);
     if (!(products > 0.0)) break;
     as_one += 2.0 * products / squares;
   }
-  return as_one * samples / static_cast<double>(left.size());
+  return as_one * static_cast<double>(record.samples) / static_cast<double>(left.size());
 }
 
 TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms) {

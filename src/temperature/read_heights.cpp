@@ -40,12 +40,11 @@ std::string remedy(const ModelDefinition& model, const Flight& flight) {
   }
   const VariableNaming& family = family_of(model, flight);
   for (const Quantity role : humidity_roles) {
-    for (const std::string& variable : family.names_of(info_of(role).name)) {
-      if (has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable)))
-        return fmt::format(
-            "give the model [variables] {} = \"{}\", which the flight records, and [humidity] "
-            "moist = true",
-            info_of(role).name, variable);
+    const std::string variable = first_with_values(flight, family, info_of(role).name);
+    if (!variable.empty()) {
+      return fmt::format(
+          "give the model [variables] {} = \"{}\", which the flight records, and [humidity] moist = true",
+          info_of(role).name, variable);
     }
   }
   return "name the flight's vapor_pressure, dew_point or frost_point in the model's [variables], and give it "
@@ -256,10 +255,8 @@ FlightHeightRecord read_heights(const FlightSet& flights, std::size_t number, co
     part.dry = trouble_with_dry_air(*part.record, model, flights[number]);
     if (!part.dry.empty() && !options.dry_air)
       throw Error(Error::Code::variable, part.dry + "; --force continues with dry air");
-    if (options.skip_returning && part.record->returns) {
-      part.record.reset();
-      part.excluded = "it ends at its start point (--skip-returning)";
-    }
+    if (options.skip_returning && part.record->returns)
+      throw Error(Error::Code::samples, "it ends at its start point (--skip-returning)");
   } catch (const Error& error) {
     part.record.reset();
     part.excluded = error.what();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <pcor/base/error.hpp>
@@ -377,8 +378,7 @@ class TemperatureCalibration {
   }
 
   static double rms(const std::vector<double>& values) {
-    double squares = 0.0;
-    for (const double value : values) squares += value * value;
+    const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
     return std::sqrt(squares / static_cast<double>(values.size()));
   }
 
