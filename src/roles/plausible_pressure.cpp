@@ -23,22 +23,6 @@ constexpr std::size_t fewest = 20;    // minimum number of values
 constexpr double flown = 20.0;        // hPa, dynamic pressure in flight
 constexpr std::size_t a_minute = 60;  // values
 
-/// The unit in which a role is read.
-std::string stated_unit(const Flight& flight, const ModelDefinition& model, const VariableNaming& family,
-                        Quantity role) {
-  const std::string stated = unit_of_role(model, family, role);
-  return stated.empty() ? flight.variable(model.variables.at(role)).units : stated;
-}
-
-/// The values in the unit of the role; empty if the variable cannot be read.
-std::vector<double> values_as(Quantity role, const Flight& flight, const VariableNaming& family,
-                              const std::string& variable, const std::string& stated = {}) {
-  const std::string unit = stated.empty() ? family.unit_of(variable) : stated;
-  const std::string requested(info_of(role).unit);
-  if (!has_values(flight, variable, requested, unit)) return {};
-  return read_values(flight, variable, flight.conversion(variable, requested, "", unit)).values;
-}
-
 /// Median ratio of recorded to expected values; NaN if there are too few values, or if the ratio varies, so
 /// that a wrong unit is not the reason.
 double ratio_of(const std::vector<double>& pressure, const std::vector<double>& expected) {
@@ -104,12 +88,6 @@ std::string unit_that_fits(const std::string& own, double ratio) {
   return {};
 }
 
-/// A GPS height; the pressure height would always agree with the pressure.
-std::string height_of(const Flight& flight, const ModelDefinition& model, const VariableNaming& family) {
-  const std::string named = model.variable_of(Quantity::altitude);
-  return named.empty() ? first_with_values(flight, family, "altitude") : named;
-}
-
 /// Holds the pressures of a model against each other, the height and other systems.
 class PressureCheck {
  public:
@@ -119,39 +97,26 @@ class PressureCheck {
         family_(family_of(model, flight)),
         static_pressure_(values_of(Quantity::static_pressure)) {}
 
-  std::optional<ImpossiblePressure> static_pressure() const {
-    if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
-    double of_height, max_of_height;
-    std::tie(of_height, max_of_height) = by_height();
-    bool is_confirmed = false;
-    std::optional<ImpossiblePressure> contradicted;
-    const auto compare = [&](const PressurePair& pair, bool is_measured) {
-      const double ratio = ratio_of(
-          static_pressure_, values_as(Quantity::static_pressure, flight_, family_, pair.static_pressure));
-      is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
-      const bool other_is_wrong =
-          std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
-      if (!contradicted && std::abs(ratio - 1.0) > max_of_other && !other_is_wrong)
-        contradicted = finding(Quantity::static_pressure, ratio, pair.static_pressure);
-    };
-    each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
-    if (std::abs(of_height - 1.0) > max_of_height) {
-      const ImpossiblePressure wrong =
-          finding(Quantity::static_pressure, of_height, "the height " + height_of(flight_, model_, family_));
-      // Two systems may be wrong by the same unit; by other amounts the height is.
-      if (!is_confirmed || !wrong.unit.empty()) return wrong;
-    }
-    return is_confirmed ? std::nullopt : contradicted;
+  std::optional<ImpossiblePressure> find() const {
+    std::optional<ImpossiblePressure> wrong = static_pressure();
+    if (!wrong) wrong = dynamic_pressure();
+    const std::optional<ImpossiblePressure> below = static_below_dynamic();
+    if (!wrong || !below) return wrong ? wrong : below;
+    // An exchanged dynamic pressure is the static pressure of the height; a real one is at most 0.83 of it up
+    // to Mach 0.97.
+    constexpr double least = 1.2;
+    const bool are_exchanged =
+        wrong->role == Quantity::static_pressure && below->ratio < least * wrong->ratio;
+    return are_exchanged ? below : wrong;
   }
 
   /// Adds a warning for each system that agrees in most of the flight, but not in a part.
   void note_parts(Notes& notes) const {
     if (!is_in_doubt(Quantity::static_pressure)) return;
     const std::string& variable = model_.variables.at(Quantity::static_pressure);
-    const auto compare = [&](const PressurePair& pair, bool is_measured) {
-      const std::vector<double> other =
-          values_as(Quantity::static_pressure, flight_, family_, pair.static_pressure);
-      if (!is_measured || !(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
+    const auto compare = [&](const PressurePair& pair, bool is_measured, const std::vector<double>& other,
+                             double ratio) {
+      if (!is_measured || !(std::abs(ratio - 1.0) <= max_of_other)) return;
       std::size_t contradicting = 0;
       for (std::size_t i = 0; i < other.size(); ++i) {
         const bool have_values = static_pressure_[i] > 0.0 && other[i] > 0.0;
@@ -163,7 +128,41 @@ class PressureCheck {
           "sensors failed",
           variable, pair.static_pressure, 100.0 * max_of_other, contradicting, other.size())));
     };
-    each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
+    each_other_system(Quantity::static_pressure, compare);
+  }
+
+  /// The unit in which a role is read.
+  std::string unit_of(Quantity role) const {
+    const std::string stated = unit_of_role(model_, family_, role);
+    return stated.empty() ? flight_.variable(model_.variables.at(role)).units : stated;
+  }
+
+ private:
+  static constexpr double max_of_other = 0.05;
+  static constexpr double max_of_dynamic = 0.1;  // includes the errors of two static pressures
+
+  std::optional<ImpossiblePressure> static_pressure() const {
+    if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
+    double of_height, max_of_height;
+    std::tie(of_height, max_of_height) = by_height();
+    bool is_confirmed = false;
+    std::optional<ImpossiblePressure> contradicted;
+    const auto compare = [&](const PressurePair& pair, bool is_measured, const auto& /*other*/,
+                             double ratio) {
+      is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
+      const bool other_is_wrong =
+          std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
+      if (!contradicted && std::abs(ratio - 1.0) > max_of_other && !other_is_wrong)
+        contradicted = finding(Quantity::static_pressure, ratio, pair.static_pressure);
+    };
+    each_other_system(Quantity::static_pressure, compare);
+    if (std::abs(of_height - 1.0) > max_of_height) {
+      const ImpossiblePressure wrong =
+          finding(Quantity::static_pressure, of_height, "the height " + height_variable());
+      // Two systems may be wrong by the same unit; by other amounts the height is.
+      if (!is_confirmed || !wrong.unit.empty()) return wrong;
+    }
+    return is_confirmed ? std::nullopt : contradicted;
   }
 
   std::optional<ImpossiblePressure> dynamic_pressure() const {
@@ -171,12 +170,10 @@ class PressureCheck {
     const std::vector<double> recorded = values_of(Quantity::dynamic_pressure);
     bool is_confirmed = false;
     std::optional<ImpossiblePressure> contradicted;
-    const auto compare = [&](const PressurePair& pair, bool is_measured) {
-      const std::vector<double> other =
-          values_as(Quantity::static_pressure, flight_, family_, pair.static_pressure);
-      std::vector<double> expected =
-          values_as(Quantity::dynamic_pressure, flight_, family_, pair.dynamic_pressure);
-      if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
+    const auto compare = [&](const PressurePair& pair, bool is_measured, const std::vector<double>& other,
+                             double static_ratio) {
+      std::vector<double> expected = values_as(Quantity::dynamic_pressure, pair.dynamic_pressure);
+      if (!(std::abs(static_ratio - 1.0) <= max_of_other)) return;
       for (std::size_t i = 0; i < expected.size(); ++i)
         expected[i] = expected[i] > flown ? other[i] + expected[i] - static_pressure_[i] : nan;
       const double ratio = ratio_of(recorded, expected);
@@ -184,7 +181,7 @@ class PressureCheck {
       if (!contradicted && std::abs(ratio - 1.0) > max_of_dynamic)
         contradicted = finding(Quantity::dynamic_pressure, ratio, pair.name());
     };
-    each_other_system(&PressurePair::dynamic_pressure, Quantity::dynamic_pressure, compare);
+    each_other_system(Quantity::dynamic_pressure, compare);
     return is_confirmed ? std::nullopt : contradicted;
   }
 
@@ -208,7 +205,7 @@ class PressureCheck {
     const std::string& q = model_.variables.at(Quantity::dynamic_pressure);
     // Factor of the values if they are read in another unit.
     const auto scale = [&](Quantity role, const std::string& unit) {
-      const std::string stated = stated_unit(flight_, model_, family_, role);
+      const std::string stated = unit_of(role);
       return is_convertible(unit, stated) ? UnitConversion::between(unit, stated, {}).scale() : 1.0;
     };
     const std::string& unit_of_p = flight_.variable(p).units;
@@ -224,51 +221,62 @@ class PressureCheck {
     return ImpossiblePressure{Quantity::static_pressure, ratio, q, "", true};
   }
 
- private:
-  static constexpr double max_of_other = 0.05;
-  static constexpr double max_of_dynamic = 0.1;  // includes the errors of two static pressures
-
   /// Whether the unit of a role is that of the file, which may be wrong.
   bool is_in_doubt(Quantity role) const {
     const std::string variable = model_.variable_of(role);
     return !variable.empty() && model_.units.count(role) == 0 && family_.unit_of(variable).empty();
   }
 
+  /// A GPS height; the pressure height would always agree with the pressure.
+  std::string height_variable() const {
+    const std::string named = model_.variable_of(Quantity::altitude);
+    return named.empty() ? first_with_values(flight_, family_, "altitude") : named;
+  }
+
+  /// The values in the unit of the role; empty if the variable cannot be read.
+  std::vector<double> values_as(Quantity role, const std::string& variable,
+                                const std::string& stated = {}) const {
+    const std::string unit = stated.empty() ? family_.unit_of(variable) : stated;
+    const std::string requested(info_of(role).unit);
+    if (!has_values(flight_, variable, requested, unit)) return {};
+    return read_values(flight_, variable, flight_.conversion(variable, requested, "", unit)).values;
+  }
+
   std::vector<double> values_of(Quantity role) const {
     const std::string variable = model_.variable_of(role);
-    const auto unit = model_.units.find(role);
     if (variable.empty()) return {};
-    return values_as(role, flight_, family_, variable, unit == model_.units.end() ? "" : unit->second);
+    return values_as(role, variable, unit_of_role(model_, family_, role));
   }
 
   /// Ratio of the static pressure to that of the height, NaN if unknown, and its maximum difference from 1.
   std::pair<double, double> by_height() const {
     double max_of_height = 0.1;
-    const std::string height = height_of(flight_, model_, family_);
+    const std::string height = height_variable();
     if (height.empty() || model_.units.count(Quantity::altitude) != 0) return {nan, max_of_height};
-    const std::vector<double> heights = values_as(Quantity::altitude, flight_, family_, height);
+    const std::vector<double> heights = values_as(Quantity::altitude, height);
     if (const double middle = median(heights); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
     std::vector<double> expected(heights.size());
     std::transform(heights.begin(), heights.end(), expected.begin(), standard_pressure);
     const double ratio = ratio_of(static_pressure_, expected);
     if (!(std::abs(ratio - 1.0) > max_of_height)) return {ratio, max_of_height};
-    const bool unit_fits =
-        !unit_that_fits(stated_unit(flight_, model_, family_, Quantity::static_pressure), ratio).empty();
+    const bool unit_fits = !unit_that_fits(unit_of(Quantity::static_pressure), ratio).empty();
     return {are_feet(static_pressure_, heights, unit_fits) ? nan : ratio, max_of_height};
   }
 
   ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {
-    return {role, ratio, "the value expected from " + against,
-            unit_that_fits(stated_unit(flight_, model_, family_, role), ratio)};
+    return {role, ratio, "the value expected from " + against, unit_that_fits(unit_of(role), ratio)};
   }
 
-  /// Calls with the pairs of other systems, and whether they are as measured: what was processed may come
-  /// from the pressure that is in doubt.
+  /// Calls with the pairs of other systems; whether they are as measured, since what was processed may come
+  /// from the pressure that is in doubt; their static pressure; and the ratio of that of the model to it.
   template <class Visit>
-  void each_other_system(std::string PressurePair::*pressure, Quantity role, const Visit& visit) const {
+  void each_other_system(Quantity role, const Visit& visit) const {
     for (const auto* pairs : {&family_.measured, &family_.processed}) {
       for (const PressurePair& pair : *pairs) {
-        if (pair.*pressure != model_.variable_of(role)) visit(pair, pairs == &family_.measured);
+        const bool is_static = role == Quantity::static_pressure;
+        if ((is_static ? pair.static_pressure : pair.dynamic_pressure) == model_.variable_of(role)) continue;
+        const std::vector<double> other = values_as(Quantity::static_pressure, pair.static_pressure);
+        visit(pair, pairs == &family_.measured, other, ratio_of(static_pressure_, other));
       }
     }
   }
@@ -279,30 +287,18 @@ class PressureCheck {
   std::vector<double> static_pressure_;
 };
 
-std::optional<ImpossiblePressure> finding_of(const PressureCheck& check) {
-  std::optional<ImpossiblePressure> wrong = check.static_pressure();
-  if (!wrong) wrong = check.dynamic_pressure();
-  const std::optional<ImpossiblePressure> below = check.static_below_dynamic();
-  if (!wrong || !below) return wrong ? wrong : below;
-  // An exchanged dynamic pressure is the static pressure of the height; a real one is at most 0.83 of it up
-  // to Mach 0.97.
-  constexpr double least = 1.2;
-  const bool are_exchanged = wrong->role == Quantity::static_pressure && below->ratio < least * wrong->ratio;
-  return are_exchanged ? below : wrong;
-}
-
 }  // namespace
 
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
-  return finding_of(PressureCheck(flight, model));
+  return PressureCheck(flight, model).find();
 }
 
 void require_possible_pressure(const Flight& flight, const ModelDefinition& model, Notes& notes) {
   const PressureCheck check(flight, model);
-  const std::optional<ImpossiblePressure> wrong = finding_of(check);
+  const std::optional<ImpossiblePressure> wrong = check.find();
   if (!wrong) return check.note_parts(notes);
   const std::string& variable = model.variables.at(wrong->role);
-  const std::string unit = stated_unit(flight, model, family_of(model, flight), wrong->role);
+  const std::string unit = check.unit_of(wrong->role);
   const std::string is_wrong = fmt::format("{}: {} in {} is {:.3g} times {}", flight.path().string(),
                                            variable, quote(unit), wrong->ratio, wrong->against);
   if (wrong->are_exchanged) {
