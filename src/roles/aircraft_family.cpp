@@ -124,13 +124,9 @@ class Reader final : TomlReader {
   VariableNaming family_;
 };
 
-bool contains_word(std::string text, std::string word) {
-  const auto lower = [](std::string& letters) {
-    for (char& letter : letters) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  };
-  lower(text);
-  lower(word);
-  return text.find(word) != std::string::npos;
+bool contains_word(const std::string& text, const std::string& word) {
+  const auto are_alike = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  return std::search(text.begin(), text.end(), word.begin(), word.end(), are_alike) != text.end();
 }
 
 /// Similarity of a flight to a family: 2 if an attribute matches, 1 if the variables match.
@@ -173,7 +169,7 @@ std::vector<const VariableNaming*> families_like(const Flight& flight) {
   int maximum = 1;
   for (const VariableNaming& family : aircraft_families()) {
     const int here = likeness(family, flight);
-    if (here < maximum || here == 0) continue;
+    if (here < maximum) continue;
     if (here > maximum) best.clear();
     maximum = here;
     best.push_back(&family);

@@ -110,9 +110,8 @@ double mean_length_near(const std::vector<Run>& runs, std::size_t run) {
   }
   std::sort(lengths.begin(), lengths.end());
   lengths.resize(lengths.size() - std::min(longest_excluded, lengths.size() - 1));
-  double sum = 0.0;
-  for (const std::size_t length : lengths) sum += static_cast<double>(length);
-  return sum / static_cast<double>(lengths.size());
+  const auto sum = std::accumulate(lengths.begin(), lengths.end(), std::size_t{0});
+  return static_cast<double>(sum) / static_cast<double>(lengths.size());
 }
 
 /// Segments in order. Runs of the same value with only ground samples between them are one segment.

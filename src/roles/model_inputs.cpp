@@ -55,18 +55,19 @@ void note_other_unit(const Flight& flight, const ModelDefinition& file, const Va
                                name, quote(stated), quote(recorded)));
 }
 
+bool has_any(const std::vector<std::string>& words, std::initializer_list<std::string_view> any) {
+  return std::find_first_of(words.begin(), words.end(), any.begin(), any.end()) != words.end();
+}
+
 /// Warns if the file calls the recovery temperature of a model the temperature of the air.
 void note_ambient(const Flight& flight, const ModelDefinition& file, Notes& notes) {
   const std::string name = file.variable_of(Quantity::recovery_temperature);
   if (!flight.has(name)) return;
   const VariableInfo& variable = flight.variable(name);
   const std::vector<std::string> words = plain_words(variable.long_name);
-  const auto says = [&words](std::initializer_list<std::string_view> any) {
-    return std::find_first_of(words.begin(), words.end(), any.begin(), any.end()) != words.end();
-  };
-  const bool is_ambient =
-      says({"ambient", "static", "outside"}) || variable.attribute("standard_name") == "air_temperature";
-  if (!is_ambient || says({"recovery", "total", "indicated"})) return;
+  const bool is_ambient = has_any(words, {"ambient", "static", "outside"}) ||
+                          variable.attribute("standard_name") == "air_temperature";
+  if (!is_ambient || has_any(words, {"recovery", "total", "indicated"})) return;
   warn_once(notes,
             fmt::format("name {} as ambient_temperature in [variables], not as recovery_temperature; the "
                         "file describes it as '{}'",
@@ -98,16 +99,13 @@ void note_wrong_pressure(const Flight& flight, const ModelDefinition& file, Note
     const std::string name = file.variable_of(role);
     if (!flight.has(name)) continue;
     const std::string& described = flight.variable(name).long_name;
-    const std::vector<std::string> words = plain_words(described);
-    const auto says = [&words](const char* word) {
-      return std::find(words.begin(), words.end(), word) != words.end();
-    };
-    if (!says("cabin") && !(is_called_corrected(described) && has_foreign_law(file))) continue;
+    const bool is_of_cabin = has_any(plain_words(described), {"cabin"});
+    if (!is_of_cabin && !(is_called_corrected(described) && has_foreign_law(file))) continue;
     warn_once(notes,
               fmt::format("name another variable than {} as {} in [variables]: the file describes it as "
                           "'{}'{}",
                           name, info_of(role).name, described,
-                          says("cabin") ? "" : ", so the model would correct it a second time"));
+                          is_of_cabin ? "" : ", so the model would correct it a second time"));
   }
 }
 

@@ -119,42 +119,27 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
 
 /// Parameters of the noise as the search sees them: logarithms, within bounds. Noise below the least does not
 /// matter: over a flight it moves heights by centimetres.
-struct Searched {
-  double HeightNoise::*value;
-  double minimum;
-  double maximum;
-};
-
-constexpr std::array<Searched, 5> searched{{
-    {&HeightNoise::white, 1e-2, 100.0},
-    {&HeightNoise::wander, 1e-3, 30.0},
-    {&HeightNoise::wander_time, 15.0, 1200.0},
-    {&HeightNoise::walk, 1e-4, 3.0},
-    {&HeightNoise::slope_change, 1e-9, 1e-5},
-}};
+constexpr std::array searched{&HeightNoise::white, &HeightNoise::wander, &HeightNoise::wander_time,
+                              &HeightNoise::walk, &HeightNoise::slope_change};
+constexpr HeightNoise lower_noise{1e-2, 1e-3, 15.0, 1e-4, 1e-9};
+constexpr HeightNoise upper_noise{100.0, 30.0, 1200.0, 3.0, 1e-5};
 
 std::vector<double> as_logarithms(const HeightNoise& noise) {
   std::vector<double> x;
-  for (const Searched& each : searched)
-    x.push_back(std::log(std::clamp(noise.*each.value, each.minimum, each.maximum)));
+  for (const auto value : searched)
+    x.push_back(std::log(std::clamp(noise.*value, lower_noise.*value, upper_noise.*value)));
   return x;
 }
 
 HeightNoise as_noise(const std::vector<double>& x) {
   HeightNoise noise;
-  for (std::size_t i = 0; i < searched.size(); ++i) noise.*searched[i].value = std::exp(x[i]);
+  for (std::size_t i = 0; i < searched.size(); ++i) noise.*searched[i] = std::exp(x[i]);
   return noise;
 }
 
 /// -2 ln of the restricted likelihood, the coefficients at their best.
 double restricted_deviance(const HeightEquations& equations, Eigen::Index terms) {
   return equations.deviance(terms) + equations.log_information(terms);
-}
-
-std::vector<double> logarithms_of(double Searched::*bound) {
-  std::vector<double> x;
-  for (const Searched& each : searched) x.push_back(std::log(each.*bound));
-  return x;
 }
 
 using Logarithms = Eigen::Matrix<double, searched.size(), 1>;
@@ -173,8 +158,8 @@ std::vector<std::array<NoisePoint, 2>> standard_deviations_of_noise(const std::v
                                                                     const MostLikely& likely,
                                                                     const Workers& workers) {
   const Logarithms centre = Eigen::Map<const Logarithms>(as_logarithms(likely.noise).data());
-  const Logarithms lower = Eigen::Map<const Logarithms>(logarithms_of(&Searched::minimum).data());
-  const Logarithms upper = Eigen::Map<const Logarithms>(logarithms_of(&Searched::maximum).data());
+  const Logarithms lower = Eigen::Map<const Logarithms>(as_logarithms(lower_noise).data());
+  const Logarithms upper = Eigen::Map<const Logarithms>(as_logarithms(upper_noise).data());
   const auto at = [&](const Logarithms& x) {
     NoisePoint point;
     point.x = x.cwiseMax(lower).cwiseMin(upper);
@@ -372,8 +357,8 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
     nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(x.size()));
-    search.set_lower_bounds(logarithms_of(&Searched::minimum));
-    search.set_upper_bounds(logarithms_of(&Searched::maximum));
+    search.set_lower_bounds(as_logarithms(lower_noise));
+    search.set_upper_bounds(as_logarithms(upper_noise));
     search.set_initial_step(1.0);
     // If the slope of isobars and the walk are nearly confounded the valley is flat: a small gain of one
     // trial does not indicate its minimum, but trials that are close together do.
