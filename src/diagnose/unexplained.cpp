@@ -464,11 +464,8 @@ void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, D
     for (const Quantity input : info->needs) {
       if (!is_role(input) || model.variables.count(input) != 0) continue;
       const std::string role(info_of(input).name);
-      const auto variables =
-          files.share().of_each_flight<std::string>([&](std::size_t flight) -> std::string {
-            const std::vector<RoleCandidate> candidates = role_candidates(files[flight], role);
-            return is_sure(candidates) ? candidates.front().variable : "";
-          });
+      const auto variables = files.share().of_each_flight<std::string>(
+          [&](std::size_t flight) { return sure_variable(files[flight], role); });
       for (const EmpiricalPredictor& traced : diagnosis.unexplained.variables) {
         if (std::any_of(variables.begin(), variables.end(),
                         [&](const std::string& variable) { return variable != traced.name; }))

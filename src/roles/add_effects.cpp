@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -21,9 +21,9 @@ using namespace internal;
 
 namespace {
 
-/// The first of the usual names among `variables`, be it with the suffix of an instrument as in PLWCD_LWOI.
-std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
-                                          const std::vector<std::string>& variables) {
+/// The first of the usual names among `variables`, be it with the suffix of an instrument as in PLWCD_LWOI;
+/// empty if there is none.
+std::string usual_variable(const std::vector<std::string>& usual, const std::vector<std::string>& variables) {
   if (variables.empty() && !usual.empty()) return usual.front();
   for (const char* const suffix : {"", "_"}) {
     for (const std::string& name : usual) {
@@ -33,13 +33,7 @@ std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
       }
     }
   }
-  return std::nullopt;
-}
-
-/// The only variable of a flight with clear evidence for a role.
-std::optional<std::string> evident_variable(Quantity role, const Flight& flight) {
-  const std::vector<RoleCandidate> candidates = role_candidates(flight, info_of(role).name);
-  return is_sure(candidates) ? std::optional(candidates.front().variable) : std::nullopt;
+  return "";
 }
 
 constexpr const char* added_key = "added";
@@ -93,16 +87,17 @@ ModelDefinition add_effects(const ModelDefinition& model, const std::vector<Mode
         fmt::format("model '{}': {}", one_line(model.model.name), one_line(error.message()));
     if (error.code != BindingError::Code::role_missing) throw Error(Error::Code::model, why);
     const std::vector<std::string> usual = usual_variables(error.quantity);
-    std::optional<std::string> variable = usual_variable(usual, variables);
-    if (!variable && flight != nullptr) variable = evident_variable(error.quantity, *flight);
-    if (!variable) {
+    std::string variable = usual_variable(usual, variables);
+    if (variable.empty() && flight != nullptr)
+      variable = sure_variable(*flight, info_of(error.quantity).name);
+    if (variable.empty()) {
       throw Error(Error::Code::model,
                   why + (usual.empty()
                              ? fmt::format(" as {} = \"...\"", info_of(error.quantity).name)
                              : fmt::format("; the flight records no variable with one of its usual names {}",
                                            fmt::join(usual, ", "))));
     }
-    file.variables[error.quantity] = *variable;
+    file.variables[error.quantity] = std::move(variable);
   }
   ProvenanceList added;
   for (const std::string& earlier : added_effects(model)) added.emplace_back(earlier);

@@ -79,9 +79,8 @@ RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, st
 RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model) {
   constexpr std::string_view name = "longitude";
   RecordedSeries series = read_usual(flight, family_of(model, flight), name);
-  if (!series.values.empty()) return series;
-  const std::vector<RoleCandidate> candidates = role_candidates(flight, name);
-  if (is_sure(candidates)) try_variable(flight, candidates.front().variable, "", *series_named(name), series);
+  if (series.values.empty())
+    try_variable(flight, sure_variable(flight, name), "", *series_named(name), series);
   return series;
 }
 

@@ -259,4 +259,9 @@ bool is_sure(const std::vector<RoleCandidate>& candidates) {
   return candidates.size() == 1 || candidates[0].score - candidates[1].score >= clear_lead;
 }
 
+std::string sure_variable(const Flight& flight, std::string_view series) {
+  const std::vector<RoleCandidate> candidates = role_candidates(flight, series);
+  return is_sure(candidates) ? candidates.front().variable : "";
+}
+
 }  // namespace pcor::internal

@@ -26,6 +26,9 @@ std::vector<RoleCandidate> role_candidates(const Flight& flight, std::string_vie
 /// Whether the first of these is sure, and clear of the second.
 bool is_sure(const std::vector<RoleCandidate>& candidates);
 
+/// The first candidate for a series if it is sure; otherwise empty.
+std::string sure_variable(const Flight& flight, std::string_view series);
+
 /// The words of a name or a text, small, with usual abbreviations written out: "wgs_alt" is wgs altitude.
 std::vector<std::string> plain_words(std::string_view text);
 
