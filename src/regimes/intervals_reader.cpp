@@ -111,15 +111,11 @@ class Reader final : TomlReader {
            "one of 'begin' and 'end' is a time of the day and the other has a date; give both in the same "
            "form");
     }
-    if (of_day && end != begin) {
-      const double duration = end - begin + (end < begin ? day_length : 0.0);
-      if (duration > day_length / 2.0) {
-        fail(end_node,
-             "'end' is before 'begin', or more than 12 h after it; correct it, or give both with dates");
-      }
-    } else if (!(begin < end)) {
-      fail(end_node, "'end' is not after 'begin'; correct one of them");
-    }
+    const double duration = end - begin + (of_day && end < begin ? day_length : 0.0);
+    if (of_day && duration > day_length / 2.0)
+      fail(end_node,
+           "'end' is before 'begin', or more than 12 h after it; correct it, or give both with dates");
+    if (!(duration > 0.0)) fail(end_node, "'end' is not after 'begin'; correct one of them");
     return {begin, end};
   }
 
