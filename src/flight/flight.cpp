@@ -50,7 +50,6 @@ std::uintmax_t size_of(const std::filesystem::path& path) {
 struct Variable {
   int id = 0;
   VariableInfo info;
-  bool rate_dimension = false;         // (Time, spsN), also with N = 1
   std::vector<double> missing_values;  // numbers of the stored type
   std::array<double, 2> valid_range;   // numbers of the stored type
   UnitConversion unpacking;            // scale_factor and add_offset
@@ -90,7 +89,6 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
     const auto rate = rate_of_dimension(file, dimensions[1]);
     if (!rate || *rate < 1) return variable;
     info.rate = *rate;
-    variable.rate_dimension = true;
   }
   info.is_series = true;
   try {
@@ -107,28 +105,17 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   return variable;
 }
 
-double mean(const double* values, int count) {
-  double sum = 0;
-  int present = 0;
-  for (int i = 0; i < count; ++i) {
-    if (std::isnan(values[i])) continue;
-    sum += values[i];
-    ++present;
-  }
-  return present == 0 ? nan : sum / present;
-}
-
-double mean_on_circle(const double* values, int count, const std::array<double, 2>& range) {
+double mean_on_circle(const std::vector<double>& values, const std::array<double, 2>& range) {
   const double turn = 2 * std::acos(-1.), width = range[1] - range[0];
   double sine = 0, cosine = 0;
-  for (int i = 0; i < count; ++i) {
-    if (std::isnan(values[i])) continue;
-    const double angle = turn * (values[i] - range[0]) / width;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    const double angle = turn * (value - range[0]) / width;
     sine += std::sin(angle);
     cosine += std::cos(angle);
   }
   // Nothing there, or directions that cancel: there is no mean direction.
-  if (std::hypot(sine, cosine) < 1e-9 * count) return nan;
+  if (std::hypot(sine, cosine) < 1e-9 * static_cast<double>(values.size())) return nan;
   const double angle = std::atan2(sine, cosine) / turn;
   return range[0] + width * (angle < 0 ? angle + 1 : angle);
 }
@@ -522,7 +509,7 @@ void Flight::require_values(const std::string& name) const {
   for (const RecordBlock block : blocks_of(records())) {
     values.resize(block.count * static_cast<std::size_t>(variable.info.rate));
     implementation_->read(variable, block, values.data());
-    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); })) return;
+    if (has_value(values)) return;
   }
   file().refuse(Error::Code::variable,
                 ": {} has no value, all {} records are missing; choose another variable", name, records());
@@ -566,11 +553,11 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
     for (std::size_t i = 0; i < requested; ++i) out[i] = conversion(values[i / held]);
     return excluded;
   }
-  const int group = own / rate;
+  std::vector<double> group(static_cast<std::size_t>(own / rate));
   const auto& circle = variable.info.modulus_range;
   for (std::size_t i = 0; i < requested; ++i) {
-    const double* samples = values.data() + i * static_cast<std::size_t>(group);
-    out[i] = conversion(circle ? mean_on_circle(samples, group, *circle) : mean(samples, group));
+    std::copy_n(values.data() + i * group.size(), group.size(), group.begin());
+    out[i] = conversion(circle ? mean_on_circle(group, *circle) : mean_of(group));
   }
   return excluded;
 }
