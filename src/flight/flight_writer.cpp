@@ -12,6 +12,7 @@
 #include <optional>
 
 #include <pcor/base/atomic_file.hpp>
+#include "base/quoting.hpp"
 #include "flight/cf_description.hpp"
 #include "flight/netcdf_copy.hpp"
 #include "flight/netcdf_output.hpp"
@@ -240,13 +241,10 @@ struct FlightWriter::Implementation {
                                   file->dimensions_of_series(static_cast<std::size_t>(variable.rate)));
     if (entry.flags) {
       std::vector<int> masks;
-      std::vector<std::string> meanings;
-      for (const Flag& flag : variable.flags) {
-        masks.push_back(flag.mask);
-        meanings.push_back(flag.meaning);
-      }
+      for (const Flag& flag : variable.flags) masks.push_back(flag.mask);
       file->variable(entry.id).putAtt("flag_masks", netCDF::ncInt, masks.size(), masks.data());
-      put_text(entry.id, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
+      put_text(entry.id, "flag_meanings",
+               fmt::format("{}", fmt::join(names_of(variable.flags, &Flag::meaning), " ")));
     } else {
       file->variable(entry.id).putAtt("_FillValue", netCDF::ncFloat, fill);
       put_text(entry.id, "units", standard_unit(variable.units));
