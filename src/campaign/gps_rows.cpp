@@ -307,28 +307,14 @@ Series gust_level(const Series& east, const Series& north, const Series& time, d
   constexpr double minimum = 1e-6;
   const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(over / step)));
   const auto reach = static_cast<std::size_t>(std::round(within / step));
-  const std::size_t size = east.size();
-  Series sums(size + 1, 0.0);
-  Series counts(size + 1, 0.0);
-  for (std::size_t i = 0; i < size; ++i) {
-    sums[i + 1] = sums[i];
-    counts[i + 1] = counts[i];
-    if (i < lag || time[i] - time[i - lag] > 1.5 * over) continue;
-    const double square =
-        0.5 * (std::pow(east[i] - east[i - lag], 2) + std::pow(north[i] - north[i - lag], 2));
-    if (std::isnan(square)) continue;
-    sums[i + 1] += square;
-    counts[i + 1] += 1.0;
+  Series squares(east.size(), nan);
+  for (std::size_t i = lag; i < squares.size(); ++i) {
+    if (time[i] - time[i - lag] > 1.5 * over) continue;
+    squares[i] = 0.5 * (std::pow(east[i] - east[i - lag], 2) + std::pow(north[i] - north[i - lag], 2));
   }
-  Series level(size, minimum);
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t from = i - std::min(i, reach);
-    const std::size_t to = std::min(i + reach + 1, size);
-    const double count = counts[to] - counts[from];
-    const double mean =
-        count > 0.0 ? (sums[to] - sums[from]) / count : sums.back() / std::max(1.0, counts.back());
-    level[i] = std::max(minimum, mean / factor);
-  }
+  Series level = running_mean(squares, 2 * reach);
+  const double whole = mean_of(squares);
+  for (double& each : level) each = std::max(minimum, (std::isnan(each) ? whole : each) / factor);
   return level;
 }
 
