@@ -117,20 +117,17 @@ Series without_noise(const Series& values, double step) {
 /// it would make the coefficient too small: by 2 % for 0.03 hPa in ADIFR, several standard errors in an hour
 /// of calm air.
 void low_pass_angles(ModelSamples& samples, double step) {
+  constexpr std::array others{Quantity::static_pressure,
+                              Quantity::dynamic_pressure,
+                              Quantity::recovery_temperature,
+                              Quantity::ambient_temperature,
+                              Quantity::heading,
+                              Quantity::ground_track,
+                              Quantity::time,
+                              Quantity::date};
   for (auto& [quantity, values] : samples.columns) {
-    switch (quantity) {
-      case Quantity::static_pressure:
-      case Quantity::dynamic_pressure:
-      case Quantity::recovery_temperature:
-      case Quantity::ambient_temperature:
-      case Quantity::heading:
-      case Quantity::ground_track:
-      case Quantity::time:
-      case Quantity::date:
-        break;
-      default:
-        values = without_noise(values, step);
-    }
+    if (std::find(others.begin(), others.end(), quantity) == others.end())
+      values = without_noise(values, step);
   }
 }
 
@@ -168,10 +165,9 @@ ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& 
   return calm;
 }
 
-// Derivatives of airspeed, static pressure, temperature with respect to some parameters at a sample.
-struct Derivatives {
-  Eigen::RowVectorXd airspeed, pressure, temperature, log_pressure;
-};
+// Derivatives at a sample with respect to some parameters: a row for each result.
+enum Result : Eigen::Index { of_airspeed, of_pressure, of_temperature, of_log_pressure };
+using Derivatives = Eigen::Matrix<double, of_log_pressure + 1, Eigen::Dynamic, Eigen::RowMajor>;
 
 class Differentiation {
  public:
@@ -186,31 +182,22 @@ class Differentiation {
     for (std::size_t& location : at_location_) location += requested.size();
     own_ = as_index(requested.size());
     if (!at_location_.empty()) amounts_ = effects.amounts(inputs);
-    const Eigen::Index size = as_index(requested_.size());
-    at_.airspeed.resize(size);
-    at_.pressure.resize(size);
-    at_.temperature.resize(size);
-    at_.log_pressure.resize(size);
+    at_.resize(Eigen::NoChange, as_index(requested_.size()));
   }
 
   Eigen::Index count() const { return own_ + as_index(at_location_.size()); }
 
   Derivatives operator()(std::size_t sample) {
     differentiate(sample);
-    return {with_effects(at_.airspeed, sample), with_effects(at_.pressure, sample),
-            with_effects(at_.temperature, sample), with_effects(at_.log_pressure, sample)};
-  }
-
- private:
-  Eigen::RowVectorXd with_effects(const Eigen::RowVectorXd& by, std::size_t sample) const {
-    Eigen::RowVectorXd all(count());
-    all.head(own_) = by.head(own_);
+    Derivatives all(at_.rows(), count());
+    all.leftCols(own_) = at_.leftCols(own_);
     for (Eigen::Index c = own_; c < count(); ++c)
-      all[c] = by[as_index(at_location_[static_cast<std::size_t>(c - own_)])] *
-               amounts_(as_index(sample), c - own_);
+      all.col(c) = at_.col(as_index(at_location_[static_cast<std::size_t>(c - own_)])) *
+                   amounts_(as_index(sample), c - own_);
     return all;
   }
 
+ private:
   void differentiate(std::size_t sample) {
     for (std::size_t first = 0; first < requested_.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, requested_.size() - first);
@@ -225,11 +212,8 @@ class Differentiation {
       const Jet& pressure = state[Quantity::corrected_static_pressure];
       for (std::size_t k = 0; k < width; ++k) {
         const auto d = static_cast<Eigen::Index>(k);
-        const Eigen::Index to = as_index(first + k);
-        at_.airspeed[to] = state[Quantity::corrected_airspeed].v[d];
-        at_.pressure[to] = pressure.v[d];
-        at_.temperature[to] = state[Quantity::ambient_temperature].v[d];
-        at_.log_pressure[to] = pressure.v[d] / pressure.a;
+        at_.col(as_index(first + k)) << state[Quantity::corrected_airspeed].v[d], pressure.v[d],
+            state[Quantity::ambient_temperature].v[d], pressure.v[d] / pressure.a;
       }
     }
   }
@@ -396,8 +380,8 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   for (const std::size_t i : used) {
     if (std::isnan(wind.east[i] + wind.north[i])) continue;
     const Derivatives by = differentiate(i);
-    if (!by.airspeed.allFinite()) continue;
-    result.defect.row(number++) = by.pressure.head(own);
+    if (!by.row(of_airspeed).allFinite()) continue;
+    result.defect.row(number++) = by.row(of_pressure).head(own);
     const double speed = airspeed[i];
     const double sine = std::sin(calm_course[i] * radians_per_degree);
     const double cosine = std::cos(calm_course[i] * radians_per_degree);
@@ -425,7 +409,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
     const auto fill = [&](Eigen::Index row, double along, double across, double shear_at, double other_shear,
                           double acceleration, double residual) {
       auto to = result.rows.row(row);
-      to.head(count) = by.airspeed * (share * along);
+      to.head(count) = by.row(of_airspeed) * (share * along);
       to.segment(count, gps_nuisance_count).setZero();
       to[count + thermometer] = by_temperature * share * along;
       to[count + recovery] = by_recovery * share * along;
@@ -489,7 +473,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   for (std::size_t i = 0; i < size; ++i) {
     if (std::isnan(air.pressure[i] + air.temperature[i])) continue;
     const Derivatives by = differentiate(i);
-    if (!by.log_pressure.allFinite() || !by.temperature.allFinite()) continue;
+    if (!by.row(of_log_pressure).allFinite() || !by.row(of_temperature).allFinite()) continue;
     const double temperature = air.temperature[i];
     const double heating = heating_at(air, i, air.airspeed[i]);
     const double by_recovery = -temperature * heating / (1.0 + heating);
@@ -501,8 +485,8 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
       const double step = -fall * (logarithm[i] - logarithm[last]);
       const double calm_step = -fall * (calm_logarithm[i] - calm_logarithm[last]);
       const double mean = 0.5 * (air.temperature[last] + temperature);
-      height.head(count) += 0.5 * calm_step * (by.temperature + before.temperature) -
-                            fall * mean * (by.log_pressure - before.log_pressure);
+      height.head(count) += 0.5 * calm_step * (by.row(of_temperature) + before.row(of_temperature)) -
+                            fall * mean * (by.row(of_log_pressure) - before.row(of_log_pressure));
       height[count + thermometer] += calm_step;
       height[count + recovery] += 0.5 * calm_step * (by_recovery + recovery_before);
       height[columns] += mean * step + warmer * (step - calm_step);
@@ -527,7 +511,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
         row[count + isobar_north] = to_north;
       }
     }
-    result.defect.row(number++) = by.pressure.head(own);
+    result.defect.row(number++) = by.row(of_pressure).head(own);
   }
   result.defect.conservativeResize(number, own);
   return result;
