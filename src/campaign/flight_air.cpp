@@ -6,13 +6,13 @@
 #include <cmath>
 #include <utility>
 
-#include <pcor/batch/batch.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/missing.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/model_on_samples.hpp"
 #include "roles/jumps.hpp"
 #include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
@@ -30,11 +30,9 @@ std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& o
   return flying;
 }
 
-void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air) {
-  const Batch batch(model, samples.model.roles);
-  std::vector<Batch::Input> inputs;
-  for (const Quantity input : batch.chain().inputs())
-    inputs.push_back({input, samples.model.find(input)->data()});
+void run_chain(const FlightSamples& samples, const ModelDefinition& model, FlightAir& air) {
+  const ModelOnSamples law(model, samples.model);
+  const Chain& chain = law.chain();
   const std::size_t count = samples.time.size();
   std::vector<Batch::Output> outputs;
   const auto requested = [&](Quantity quantity, std::vector<double>& values) {
@@ -42,8 +40,8 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
     outputs.push_back({quantity, values.data()});
   };
   const auto if_there = [&](Quantity quantity, std::vector<double>& values) {
-    if (batch.chain().needs(quantity) && !batch.chain().recorded(quantity)) requested(quantity, values);
-    if (batch.chain().recorded(quantity)) values = *samples.model.find(quantity);
+    if (chain.derives(quantity)) requested(quantity, values);
+    if (chain.recorded(quantity)) values = *samples.model.find(quantity);
   };
   std::vector<double> humidity;
   requested(Quantity::static_defect, air.static_defect);
@@ -51,7 +49,7 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
   requested(Quantity::corrected_dynamic_pressure, air.dynamic);
   requested(Quantity::corrected_mach, air.mach);
   requested(Quantity::humidity, humidity);
-  if (batch.chain().has_temperature()) {
+  if (chain.has_temperature()) {
     requested(Quantity::ambient_temperature, air.temperature);
     requested(Quantity::corrected_airspeed, air.airspeed);
   }
@@ -59,12 +57,12 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
   if_there(Quantity::sideslip, air.sideslip);
   if_there(Quantity::attack_ratio, air.attack_ratio);
   if_there(Quantity::sideslip_ratio, air.sideslip_ratio);
-  if (batch.chain().has_lams()) {
+  if (chain.has_lams()) {
     air.laser.emplace();
     requested(Quantity::lams_static_defect, air.laser->static_defect);
     requested(Quantity::lams_temperature, air.laser->temperature);
   }
-  batch.run(inputs, outputs, count);
+  law.batch().run(law.columns(), outputs, count);
   air.gas_constant.resize(count);
   for (std::size_t i = 0; i < count; ++i) air.gas_constant[i] = moist_air(humidity[i]).gas_constant;
   if (!air.laser) return;
@@ -124,7 +122,7 @@ FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const Mo
   air.flying = find_flying(*samples, options);
   air.measured_static = *samples->model.find(Quantity::static_pressure);
   air.measured_dynamic = *samples->model.find(Quantity::dynamic_pressure);
-  run_chain(*samples, model.model, air);
+  run_chain(*samples, model, air);
   air.samples = samples;
   find_heights(flight, model, air);
   const GroundVelocity ground = read_ground_velocity(flight, model);

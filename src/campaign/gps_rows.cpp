@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <pcor/physics/constants.hpp>
-#include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/low_pass.hpp"

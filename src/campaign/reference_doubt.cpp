@@ -1,7 +1,6 @@
 #include "campaign/reference_doubt.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "campaign/model_parameters.hpp"
