@@ -15,6 +15,7 @@
 
 #include <pcor/base/error.hpp>
 #include "flight/flight_file.hpp"
+#include "model_io/model_names.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -64,14 +65,11 @@ const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 /// Coefficients of a model with stated standard errors: "static-qp.a2 = 0.0308 +- 0.0012; ...".
 std::string coefficients_text(const ModelDefinition& model) {
   std::string text;
-  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
-    const ModelEffect& effect = model.model.effects[e];
-    const std::vector<std::string> names = parameter_names(effect);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const std::optional<double> error = model.fit(e, i).standard_error;
-      text += fmt::format("{}{}.{} = {}{}", text.empty() ? "" : "; ", effect.id, names[i],
-                          effect.parameters[i], error ? fmt::format(" +- {:.3g}", *error) : "");
-    }
+  for (const NamedParameter& each : named_parameters(model.model)) {
+    const std::optional<double> error = model.fit(each.effect, each.number).standard_error;
+    text += fmt::format("{}{} = {}{}", text.empty() ? "" : "; ", each.name,
+                        model.model.effects[each.effect].parameters[each.number],
+                        error ? fmt::format(" +- {:.3g}", *error) : "");
   }
   return text;
 }
