@@ -125,8 +125,7 @@ void Batch::compute(const std::vector<Input>& inputs, const std::vector<Output>&
               "effect at the static ports that is neither a shape nor of a formula",
               each.parameter, each.effect));
     }
-    BatchDerivative& column = columns.emplace_back();
-    column = {each.effect, each.parameter, nullptr, each.values};
+    BatchDerivative& column = columns.emplace_back(BatchDerivative{each});
     if (chain_.surface_of(each.effect) != nullptr) continue;
     coefficients.push_back(chain_.unit_coefficients(each.effect, each.parameter, job.parameters));
     column.coefficients = coefficients.back().data();

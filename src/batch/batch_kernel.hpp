@@ -11,11 +11,8 @@
 namespace pcor::internal {
 
 /// Derivative of the static defect with respect to a coefficient in which it is linear.
-struct BatchDerivative {
-  std::size_t effect = 0;
-  std::size_t parameter = 0;             ///< index in the effect
+struct BatchDerivative : Batch::Derivative {
   const double* coefficients = nullptr;  ///< `BoundModel::unit_coefficients`; null for a surface
-  double* values = nullptr;
 };
 
 /// Arguments of a kernel: plain pointers, because its code may be compiled for another processor than the
