@@ -126,18 +126,18 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
                                        const UnitOwner& owner) {
   const std::lock_guard guard(udunits_lock());
   const std::string whose = (owner.file.empty() ? "" : owner.file + ": ") + owner.variable;
-  const std::string shown = internal::shortened(from);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(Error::Code::unit, whose + " has the unit \"" + internal::shortened(from) + "\", which " +
+                                       why + how_to_state(owner, to));
+  };
   if (from.empty()) throw Error(Error::Code::unit, whose + " has no unit; " + how_to_state(owner, to));
   const Unit target = parse(to);
   if (!target)
     throw Error(Error::Code::unit, whose + ": the requested unit \"" + to + "\" is not known to UDUNITS");
   const Unit source = parse(from);
-  if (!source)
-    throw Error(Error::Code::unit,
-                whose + " has the unit \"" + shown + "\", which is not known; " + how_to_state(owner, to));
+  if (!source) refuse("is not known; ");
   if (!answer_to([&] { return ut_are_convertible(source.get(), target.get()); }))
-    throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which cannot be converted to " +
-                                       to + "; choose another variable, or " + how_to_state(owner, to));
+    refuse("cannot be converted to " + to + "; choose another variable, or ");
 
   const Converter converter =
       answer_to([&] { return Converter(ut_get_converter(source.get(), target.get())); });
@@ -151,9 +151,7 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   const bool is_line =
       std::isnormal(scale) && std::isfinite(offset) &&
       std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset));
-  if (!is_line)
-    throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which is not proportional to " +
-                                       to + "; " + how_to_state(owner, to));
+  if (!is_line) refuse("is not proportional to " + to + "; ");
   return {scale, offset};
 }
 
