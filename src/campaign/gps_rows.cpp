@@ -359,9 +359,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   GpsRows result;
   result.time = samples.time;
   result.level = gust_level(wind.east, wind.north, samples.time, samples.step);
-  result.airspeed.resize(size, 0.0);
-  result.east.resize(size, 0.0);
-  result.north.resize(size, 0.0);
+  result.airspeed = result.east = result.north = Series(size, 0.0);
   double height_before = nan;
   for (const double height : z) {
     result.rise.push_back(std::isnan(height - height_before) ? 0.0 : height - height_before);
@@ -444,10 +442,9 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   GpsRows result;
   result.kind = GpsKind::height;
   result.time = samples.time;
-  result.warmth.resize(size, 0.0);
+  result.warmth = result.rise = Series(size, 0.0);
   result.thickness = thickness_of(air);
   result.is_break.resize(size, false);
-  result.rise.resize(size, 0.0);
   ModelSamples calm = samples.model;
   low_pass_angles(calm, samples.step);
   // Even little noise of the pressures biases columns like that of an offset of the transducer.

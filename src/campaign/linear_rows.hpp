@@ -48,7 +48,7 @@ class LinearRows {
   const Residuals& residuals() const { return residuals_; }
   const FlightSamples& samples() const { return residuals_.samples(); }
   /// Samples at which derivatives are evaluated.
-  const FlightSamples& inputs() const { return derived().samples(); }
+  const FlightSamples& inputs() const { return (derived_ ? *derived_ : residuals_).samples(); }
 
   /// Mask of each sample. If derivatives are noise-free and a residual depends on its neighbours, all of
   /// these must be usable.
@@ -85,7 +85,6 @@ class LinearRows {
  private:
   void choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs);
   void keep_regimes(const std::vector<Regime>& regimes);
-  const Residuals& derived() const { return derived_ ? *derived_ : residuals_; }
 
   Residuals residuals_;
   std::optional<Residuals> derived_;  // set if derivatives are evaluated away from the recorded samples
