@@ -190,13 +190,10 @@ void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluatio
       column.setZero();
     }
   }
-  std::vector<double> derivatives(directions.size() * used.size());
+  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(as_index(used.size()), as_index(numbers.size()));
   residuals.differentiate_along(used.data(), used.size(), residuals.parameters().data(), directions,
                                 derivatives.data());
-  for (std::size_t c = 0; c < numbers.size(); ++c) {
-    for (std::size_t k = 0; k < used.size(); ++k)
-      columns(as_index(used[k]), numbers[c]) = static_cast<float>(derivatives[c * used.size() + k]);
-  }
+  columns(used, numbers) = derivatives.cast<float>();
 }
 
 /// Systems of a residual, the model's system first.
@@ -400,11 +397,10 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   Eigen::Index next = 0;  // next evaluated column
   for (const System& system : systems) {
     const bool is_of_model = &system == &model_system;
-    const std::size_t first = is_of_model ? 0 : set.base_of_others[reference];
-    for (std::size_t c = 0; c < system.free.size() && !is_wind; ++c, ++next) {
-      for (std::size_t k = 0; k < used.size(); ++k)
-        columns.base(as_index(used[k]), as_index(first + c)) = static_cast<float>(-found(as_index(k), next));
-    }
+    const Eigen::Index first = is_of_model ? 0 : as_index(set.base_of_others[reference]);
+    const Eigen::Index free = is_wind ? 0 : as_index(system.free.size());
+    columns.base.middleCols(first, free)(used, Eigen::all) = -found.middleCols(next, free).cast<float>();
+    next += free;
     const Eigen::Index locations = of_neighbours ? 0 : as_index(system.locations().size());
     const auto by_location = found.middleCols(next, locations);
     next += locations;

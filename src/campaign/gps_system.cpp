@@ -109,9 +109,7 @@ std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSam
   effects.at.assign(parts.size(), 0);
   effects.amounts = [&](const ModelSamples&) {
     Eigen::MatrixXd amounts = Eigen::MatrixXd::Zero(as_index(samples.time.size()), as_index(parts.size()));
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      for (const std::size_t i : parts[part]) amounts(as_index(i), as_index(part)) = 1.0;
-    }
+    for (std::size_t part = 0; part < parts.size(); ++part) amounts(parts[part], as_index(part)).setOnes();
     amounts.col(0).setOnes();  // heights also pass through samples that are not used
     return amounts;
   };
