@@ -172,59 +172,49 @@ class Differentiation {
  public:
   Differentiation(const ModelDefinition& file, const ModelSamples& inputs, const double* parameters,
                   const std::vector<std::size_t>& requested, const AddedEffects& effects)
-      : law_(file, inputs),
-        parameters_(parameters),
-        requested_(requested),
-        at_location_(effects.at),
-        dual_(law_.parameters().size()) {
+      : law_(file, inputs), parameters_(parameters), requested_(requested), at_location_(effects.at) {
     requested_.insert(requested_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
     for (std::size_t& location : at_location_) location += requested.size();
     own_ = as_index(requested.size());
     if (!at_location_.empty()) amounts_ = effects.amounts(inputs);
-    at_.resize(Eigen::NoChange, as_index(requested_.size()));
   }
 
   Eigen::Index count() const { return own_ + as_index(at_location_.size()); }
 
-  Derivatives operator()(std::size_t sample) {
-    differentiate(sample);
-    Derivatives all(at_.rows(), count());
-    all.leftCols(own_) = at_.leftCols(own_);
+  Derivatives operator()(std::size_t sample) const {
+    Derivatives at;
+    at.resize(Eigen::NoChange, as_index(requested_.size()));
+    for (std::size_t first = 0; first < requested_.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, requested_.size() - first);
+      std::vector<Jet> dual(parameters_, parameters_ + law_.parameters().size());
+      for (std::size_t k = 0; k < width; ++k) {
+        // GPS is independent of the model of another system.
+        if (requested_[first + k] < dual.size()) dual[requested_[first + k]].v[as_index(k)] = 1.0;
+      }
+      State<Jet> state;
+      law_.air(sample, dual.data(), state);
+      const Jet& pressure = state[Quantity::corrected_static_pressure];
+      for (std::size_t k = 0; k < width; ++k) {
+        const Eigen::Index d = as_index(k);
+        at.col(as_index(first + k)) << state[Quantity::corrected_airspeed].v[d], pressure.v[d],
+            state[Quantity::ambient_temperature].v[d], pressure.v[d] / pressure.a;
+      }
+    }
+    Derivatives all(at.rows(), count());
+    all.leftCols(own_) = at.leftCols(own_);
     for (Eigen::Index c = own_; c < count(); ++c)
-      all.col(c) = at_.col(as_index(at_location_[static_cast<std::size_t>(c - own_)])) *
+      all.col(c) = at.col(as_index(at_location_[static_cast<std::size_t>(c - own_)])) *
                    amounts_(as_index(sample), c - own_);
     return all;
   }
 
  private:
-  void differentiate(std::size_t sample) {
-    for (std::size_t first = 0; first < requested_.size(); first += jet_width) {
-      const std::size_t width = std::min<std::size_t>(jet_width, requested_.size() - first);
-      for (std::size_t p = 0; p < dual_.size(); ++p) dual_[p] = Jet(parameters_[p]);
-      for (std::size_t k = 0; k < width; ++k) {
-        // GPS is independent of the model of another system.
-        if (requested_[first + k] < dual_.size())
-          dual_[requested_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
-      }
-      State<Jet> state;
-      law_.air(sample, dual_.data(), state);
-      const Jet& pressure = state[Quantity::corrected_static_pressure];
-      for (std::size_t k = 0; k < width; ++k) {
-        const auto d = static_cast<Eigen::Index>(k);
-        at_.col(as_index(first + k)) << state[Quantity::corrected_airspeed].v[d], pressure.v[d],
-            state[Quantity::ambient_temperature].v[d], pressure.v[d] / pressure.a;
-      }
-    }
-  }
-
   const ModelOnSamples law_;
   const double* parameters_;
   std::vector<std::size_t> requested_;    // including the amounts at the locations of effects
   std::vector<std::size_t> at_location_;  // index of the location of each coefficient of the effects
   Eigen::Index own_ = 0;
   Eigen::MatrixXd amounts_{};
-  std::vector<Jet> dual_;
-  Derivatives at_{};
 };
 
 // Angles of a sample, deg. If pitch or attack is unknown, the path of the aircraft follows from its climb.
@@ -367,7 +357,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   }
   result.thickness = thickness_of(air);
   const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
-  Differentiation differentiate(file, calm, parameters, requested, effects);
+  const Differentiation differentiate(file, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
   const Eigen::Index own = as_index(requested.size());
   const Eigen::Index records = as_index(size);
@@ -452,7 +442,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
     if (Series* const values = calm.find(input)) *values = low_passed(*values, 5.0 / samples.step);
   }
-  Differentiation differentiate(file, calm, parameters, requested, effects);
+  const Differentiation differentiate(file, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
   const Eigen::Index own = as_index(requested.size());
   const Eigen::Index columns = count + gps_nuisance_count;
