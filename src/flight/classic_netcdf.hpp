@@ -9,8 +9,8 @@ namespace pcor::internal {
 /// Sizes according to the header of a classic netCDF file.
 struct ClassicLayout {
   std::uintmax_t size = 0;  ///< the least number of bytes that the file must have
-  std::uint64_t record_bytes =
-      0;  ///< total of all variables over the unlimited dimension; 0 without such variables
+  /// Total of all variables over the unlimited dimension; 0 without such variables.
+  std::uint64_t record_bytes = 0;
   std::uint64_t records_begin = 0;  ///< the byte at which the first record begins
 };
 

@@ -21,8 +21,8 @@ class FlightPartition;
 /// Options for reading the flights of a set.
 struct FlightSetOptions {
   TimestampAlignment timestamp_alignment = TimestampAlignment::begin;
-  Communicator* comm =
-      &serial_communicator();  ///< processes that share the flights; each reads the flights of its partition
+  /// Processes that share the flights; each reads the flights of its partition.
+  Communicator* comm = &serial_communicator();
   /// Maximum memory for samples per process, bytes; further samples are read again when needed, so memory
   /// does not depend on the number of flights.
   std::size_t memory = std::size_t{512} << 20U;

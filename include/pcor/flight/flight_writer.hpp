@@ -41,8 +41,8 @@ struct FileDescription {
   std::string history;
   std::string latitude, longitude, altitude;        ///< variables of the aircraft's position in the output
   std::string altitude_standard_name = "altitude";  ///< default CF standard name
-  std::vector<std::pair<std::string, std::string>>
-      attributes;  ///< further global attributes; they replace the input's
+  /// Further global attributes; they replace the input's.
+  std::vector<std::pair<std::string, std::string>> attributes;
 };
 
 /// Storage format of a netCDF file.
@@ -50,8 +50,8 @@ enum class NetcdfFormat { classic, offset64, cdf5, netcdf4, netcdf4_classic };
 
 /// Time axis and format of a flight without input file.
 struct NewFlight {
-  double first_time =
-      0;  ///< time of the first record, seconds since 1970 UTC; `Time` counts from the midnight before it
+  /// Time of the first record, seconds since 1970 UTC; `Time` counts from the midnight before it.
+  double first_time = 0;
   bool whole_seconds = true;
   NetcdfFormat kind = NetcdfFormat::netcdf4;
 };
