@@ -390,11 +390,9 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
     const auto right = [&](const Eigen::Vector2d& move) {
       return (move[0] * raw[1] - move[1] * raw[0]) / raw_length / small;
     };
-    const double acceleration_east = rate_at(calm_ground_east, samples.time, i);
-    const double acceleration_north = rate_at(calm_ground_north, samples.time, i);
     const double above = (z[i] - mean_height) / 1000.0;
-    const auto fill = [&](Eigen::Index row, double along, double across, double shear_at, double other_shear,
-                          double acceleration, double residual) {
+    const auto fill = [&](Eigen::Index row, double along, double across, Column shear,
+                          const Series& calm_ground, double residual) {
       auto to = result.rows.row(row);
       to.head(count) = by.row(of_airspeed) * (share * along);
       to.segment(count, gps_nuisance_count).setZero();
@@ -403,14 +401,13 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
       to[count + heading_offset] = speed * share * across * radians_per_degree;
       to[count + sideslip_offset] = speed * (ahead(by_sideslip) * along + right(by_sideslip) * across);
       to[count + attack_offset] = speed * (ahead(by_attack) * along + right(by_attack) * across);
+      const double acceleration = rate_at(calm_ground, samples.time, i);
       to[count + velocity_lag] = std::isnan(acceleration) ? 0.0 : acceleration;
-      to[count + shear_east] = shear_at;
-      to[count + shear_north] = other_shear;
+      to[count + shear] = std::isnan(above) ? 0.0 : above;
       to[count + gps_nuisance_count] = residual;
     };
-    const double up = std::isnan(above) ? 0.0 : above;
-    fill(as_index(i), sine, cosine, up, 0.0, acceleration_east, wind.east[i]);
-    fill(records + as_index(i), cosine, -sine, 0.0, up, acceleration_north, wind.north[i]);
+    fill(as_index(i), sine, cosine, shear_east, calm_ground_east, wind.east[i]);
+    fill(records + as_index(i), cosine, -sine, shear_north, calm_ground_north, wind.north[i]);
   }
   result.defect.conservativeResize(number, own);
   return result;
