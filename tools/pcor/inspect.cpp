@@ -192,7 +192,7 @@ void print_candidates(const Inspection& flight) {
   }
   bool any = false;
   for (const auto& [role, candidates] : flight.candidates) {
-    for (const InspectedCandidate& each : candidates) {
+    for (const RoleCandidate& each : candidates) {
       if (missing.count(role) == 0) continue;
       if (!any) say("\n{:<33} {:<12} {:>5}  evidence\n", "candidates, not used", "variable", "score");
       any = true;
@@ -422,7 +422,7 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
   for (const auto& [role, candidates] : flight.candidates) {
     const Quantity quantity = quantity_named(role);
     const bool is_open = quantity != Quantity::count && is_role(quantity);
-    for (const InspectedCandidate& each : candidates) {
+    for (const RoleCandidate& each : candidates) {
       const auto& variables = flight.model->variables;
       const bool is_used = std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
         return variable.second == each.variable;

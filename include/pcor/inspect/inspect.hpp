@@ -92,8 +92,6 @@ void describe(const Problem& self, Field& field) {
   field("action", self.action, "action taken, and how to change it");
 }
 
-using InspectedCandidate = RoleCandidate;
-
 /// Role without a variable, and the consequence.
 struct MissingRole {
   std::string role;
@@ -128,7 +126,7 @@ struct Inspection {
   std::vector<InspectedRole> roles{};
   std::vector<MissingRole> missing{};
   /// Candidates for each role, by decreasing score.
-  std::map<std::string, std::vector<InspectedCandidate>> candidates{};
+  std::map<std::string, std::vector<RoleCandidate>> candidates{};
   std::vector<std::string> not_used{};  ///< variables without a role that are not candidates either
   std::vector<Problem> problems{};
   /// References to which a model can be fitted, as for `--reference`: "lams", "pressure:PS_A", "wind"; may be
