@@ -59,10 +59,6 @@ std::vector<std::size_t> indices_of(const std::vector<FitParameter>& parameters,
                           meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
 }
 
-constexpr std::size_t passes_expected = 40;
-
-}  // namespace
-
 std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
                                          const RefitOptions& options) {
   std::vector<FitParameter> parameters;
@@ -85,19 +81,22 @@ std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Ref
   return parameters;
 }
 
-std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>& parameters,
-                                                 const std::vector<FitStage>& stages,
-                                                 const std::string& model_name) {
+constexpr std::size_t passes_expected = 40;
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> fit_stages(const FitTask& task) {
+  const std::vector<FitParameter>& parameters = task.parameters;
   std::vector<bool> left;
   for (const FitParameter& parameter : parameters) left.push_back(!parameter.fixed);
   if (std::find(left.begin(), left.end(), true) == left.end()) {
     throw Error(
         Error::Code::usage,
         fmt::format("model '{}': no coefficient is free; add an effect, or free one with --free EFFECT",
-                    model_name));
+                    task.model.model.name));
   }
   std::vector<std::vector<std::size_t>> result;
-  for (const FitStage& stage : stages) {
+  for (const FitStage& stage : task.options.stages) {
     std::vector<std::size_t>& requested = result.emplace_back();
     for (const std::string& name : stage.parameters) {
       for (const std::size_t p : indices_of(parameters, name, "--stage")) {

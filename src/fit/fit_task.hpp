@@ -27,24 +27,14 @@ struct FitParameter {
   bool fixed = false;
 };
 
-/// The parameters of the model, then those of a static system that is the reference, in the order of
-/// `residual`. @throws Error if the options name an unknown parameter, or bounds are empty.
-std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
-                                         const RefitOptions& options);
-
-/// Indices of the parameters that each stage fits; the last stage fits the remaining ones, possibly no
-/// parameter.
-/// @throws Error if no parameter is free, or a stage names one that is not.
-std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>& parameters,
-                                                 const std::vector<FitStage>& stages,
-                                                 const std::string& model_name);
-
 /// Input shared by all steps of a fit.
 struct FitTask {
   const ModelDefinition& model;
   const Reference& reference;
   const RefitOptions& options;
   const FlightSet& flights;
+  /// The parameters of the model, then those of a static system that is the reference, in the order of
+  /// `Residuals::parameters`.
   std::vector<FitParameter> parameters;
   Eigen::VectorXd start;       ///< their values in the files
   Eigen::MatrixXd doubt;       ///< covariance of these values stated in the files; zero if not stated
@@ -77,8 +67,14 @@ struct FitTask {
 
 /// The task of a fit of the model with its references; the first one is also fitted if the options request
 /// it. The task refers to the arguments.
+/// @throws Error if the options name an unknown parameter, or bounds are empty.
 FitTask fit_task(const ModelDefinition& model, const References& references, const RefitOptions& options,
                  const FlightSet& flights);
+
+/// Indices of the parameters that each stage fits; the last stage fits the remaining ones, possibly no
+/// parameter.
+/// @throws Error if no parameter is free, or a stage names one that is not.
+std::vector<std::vector<std::size_t>> fit_stages(const FitTask& task);
 
 /// Current result of a fit.
 struct Solution {

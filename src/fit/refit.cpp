@@ -84,6 +84,7 @@ void require_sense(const FlightSet& flights, const ModelDefinition& model, const
 /// Result of the stages of a fit.
 struct Fitted {
   Solution solution{};
+  std::vector<std::vector<std::size_t>> stages{};
   std::vector<std::size_t> parameters{};  // sorted by stage
   std::vector<std::size_t> held{};        // fixed parameters with an error stated in the files
   std::vector<int> stage_of{};            // one per parameter
@@ -98,14 +99,14 @@ struct Fitted {
 
 /// Iterates over the stages until no coefficient moves by a hundredth of its uncertainty. The weights are
 /// those of all samples.
-void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
+void repeat_stages(Fitted& fitted, const FitTask& task) {
   constexpr int max_rounds = 50;
   Solution& solution = fitted.solution;
-  for (std::size_t s = 0; s + 1 < stages.size(); ++s) {
+  for (std::size_t s = 0; s < task.options.stages.size(); ++s) {
     const FitSetup setup = fitted.setup(task.options.stages[s].regimes);
-    fitted.equations.push_back({std::make_shared<FitFlights>(task, setup), stages[s]});
+    fitted.equations.push_back({std::make_shared<FitFlights>(task, setup), fitted.stages[s]});
   }
-  fitted.equations.push_back({fitted.flights, stages.back()});
+  fitted.equations.push_back({fitted.flights, fitted.stages.back()});
   fitted.has_converged = false;
   for (int round = 0; round < max_rounds && !fitted.has_converged; ++round) {
     const Eigen::VectorXd before = solution.values;
@@ -128,12 +129,14 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
 }
 
 /// Fit input, with the start as the solution.
-Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
+Fitted at_start(const FitTask& task) {
   Fitted fitted;
+  fitted.stages = fit_stages(task);
   fitted.stage_of.resize(task.parameters.size(), 0);
-  for (std::size_t s = 0; s < stages.size(); ++s) {
-    for (const std::size_t p : stages[s]) fitted.stage_of[p] = static_cast<int>(s) + 1;
-    fitted.parameters.insert(fitted.parameters.end(), stages[s].begin(), stages[s].end());
+  for (std::size_t s = 0; s < fitted.stages.size(); ++s) {
+    const std::vector<std::size_t>& stage = fitted.stages[s];
+    for (const std::size_t p : stage) fitted.stage_of[p] = static_cast<int>(s) + 1;
+    fitted.parameters.insert(fitted.parameters.end(), stage.begin(), stage.end());
   }
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
     if (fitted.stage_of[p] == 0 && task.doubt(as_index(p), as_index(p)) > 0.0) fitted.held.push_back(p);
@@ -156,9 +159,7 @@ void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
 }
 
 Fitted fit_in_stages(FitTask& task) {
-  const std::vector<std::vector<std::size_t>> stages =
-      fit_stages(task.parameters, task.options.stages, task.model.model.name);
-  Fitted fitted = at_start(task, stages);
+  Fitted fitted = at_start(task);
   Solution& solution = fitted.solution;
   constexpr int max_masks = 3;
   for (int round = 0; round < max_masks; ++round) {
@@ -168,8 +169,8 @@ Fitted fit_in_stages(FitTask& task) {
     // The masks are those of the solution, so that the start does not decide.
     if (!fitted.flights->masks_change_at(solution.values)) break;
   }
-  if (stages.size() > 1)
-    repeat_stages(fitted, task, stages);
+  if (fitted.stages.size() > 1)
+    repeat_stages(fitted, task);
   else
     fitted.equations.push_back({fitted.flights, fitted.parameters});
   return fitted;
@@ -192,7 +193,7 @@ Fitted prepared_for_gps(const FitTask& task) {
         fmt::format("--loss {}: a fit to GPS alone has no loss function, outliers get a larger variance; "
                     "omit --loss, or give a further reference",
                     to_string(task.options.loss)));
-  Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
+  Fitted fitted = at_start(task);
   for (const std::size_t p : fitted.parameters) {
     if (const SurfaceRoughness* const surface = task.surface_of(p)) {
       throw Error(
