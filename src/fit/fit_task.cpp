@@ -11,8 +11,8 @@
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
+#include "campaign/model_parameters.hpp"
 #include "campaign/reference_id.hpp"
-#include "fit/prior.hpp"
 #include "model_io/model_names.hpp"
 #include "model_io/parameter_unit.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -20,11 +20,15 @@
 namespace pcor::internal {
 namespace {
 
-void add_parameters(std::vector<FitParameter>& parameters, const ModelDefinition& file,
-                    const std::string& prefix, bool fitted) {
+/// Adds the parameters of a model, and its surfaces.
+void add_parameters(FitTask& task, const ModelDefinition& file, const std::string& prefix, bool fitted) {
   for (const auto& [name, e, p] : named_parameters(file.model)) {
     const ModelEffect& effect = file.model.effects[e];
-    FitParameter& parameter = parameters.emplace_back();
+    if (effect.is_surface() && p == 0) {
+      task.surfaces.push_back({prefix + effect.id, task.parameters.size(), effect.parameters.size(),
+                               second_differences(*effect.surface)});
+    }
+    FitParameter& parameter = task.parameters.emplace_back();
     parameter.effect = prefix + effect.id;
     parameter.name = prefix + name;
     parameter.start = effect.parameters[p];
@@ -59,26 +63,43 @@ std::vector<std::size_t> indices_of(const std::vector<FitParameter>& parameters,
                           meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
 }
 
-std::vector<FitParameter> fit_parameters(const ModelDefinition& model, const Reference& reference,
-                                         const RefitOptions& options) {
-  std::vector<FitParameter> parameters;
-  add_parameters(parameters, model, "", true);
-  if (reference.model() != nullptr)
-    add_parameters(parameters, *reference.model(), id_on_other_system("", ""), options.fit_reference);
-  for (const std::string& name : options.free) {
+void find_parameters(FitTask& task) {
+  std::vector<FitParameter>& parameters = task.parameters;
+  const ModelDefinition* const system = task.reference.model();
+  add_parameters(task, task.model, "", true);
+  if (system != nullptr)
+    add_parameters(task, *system, id_on_other_system("", ""), task.options.fit_reference);
+  for (const std::string& name : task.options.free) {
     for (const std::size_t p : indices_of(parameters, name, "--free")) parameters[p].fixed = false;
   }
-  for (const std::string& name : options.fix) {
+  for (const std::string& name : task.options.fix) {
     for (const std::size_t p : indices_of(parameters, name, "--fix")) parameters[p].fixed = true;
   }
-  for (const FitParameter& parameter : parameters) {
-    if (!(parameter.bounds.lower < parameter.bounds.upper)) {
+  task.start = task.lower = task.upper = Eigen::VectorXd(as_index(parameters.size()));
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto& [lower, upper] = parameters[p].bounds;
+    if (!(lower < upper)) {
       throw Error(Error::Code::usage,
-                  fmt::format("{}: its bounds [{}, {}] are empty; give the smaller one first", parameter.name,
-                              parameter.bounds.lower, parameter.bounds.upper));
+                  fmt::format("{}: its bounds [{}, {}] are empty; give the smaller one first",
+                              parameters[p].name, lower, upper));
     }
+    task.start[as_index(p)] = parameters[p].start;
+    task.lower[as_index(p)] = lower;
+    task.upper[as_index(p)] = upper;
   }
-  return parameters;
+}
+
+/// Covariance of all parameters from the standard errors and covariances in the files.
+Eigen::MatrixXd stated_covariance_of(const FitTask& task) {
+  const Eigen::Index size = task.start.size();
+  const Eigen::MatrixXd own = stated_covariance(task.model);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
+  all.topLeftCorner(own.rows(), own.cols()) = own;
+  if (task.reference.model() != nullptr) {
+    const Eigen::Index rest = size - own.rows();
+    all.bottomRightCorner(rest, rest) = stated_covariance(*task.reference.model());
+  }
+  return all;
 }
 
 constexpr std::size_t passes_expected = 40;
@@ -118,15 +139,9 @@ std::vector<std::vector<std::size_t>> fit_stages(const FitTask& task) {
 FitTask fit_task(const ModelDefinition& model, const References& references, const RefitOptions& options,
                  const FlightSet& flights) {
   const Reference& reference = first_of(references);
-  FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
-  task.doubt = stated_covariance(model, reference);
-  task.surfaces = surfaces_of(model.model, reference.model());
-  task.start = task.lower = task.upper = Eigen::VectorXd(as_index(task.parameters.size()));
-  for (std::size_t p = 0; p < task.parameters.size(); ++p) {
-    task.start[as_index(p)] = task.parameters[p].start;
-    task.lower[as_index(p)] = task.parameters[p].bounds.lower;
-    task.upper[as_index(p)] = task.parameters[p].bounds.upper;
-  }
+  FitTask task{model, reference, options, flights};
+  find_parameters(task);
+  task.doubt = stated_covariance_of(task);
   task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
     ++passes;
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);

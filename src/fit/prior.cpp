@@ -4,44 +4,30 @@
 #include <cmath>
 
 #include "campaign/candidate.hpp"
-#include "campaign/model_parameters.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
-
-Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference) {
-  const Eigen::MatrixXd own = stated_covariance(model);
-  Eigen::MatrixXd other;
-  if (reference.model() != nullptr) other = stated_covariance(*reference.model());
-  const Eigen::Index size = own.rows() + other.rows();
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  covariance.topLeftCorner(own.rows(), own.rows()) = own;
-  covariance.bottomRightCorner(other.rows(), other.rows()) = other;
-  return covariance;
-}
-
 namespace {
 
 Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>& requested) {
   const Eigen::Index size = as_index(requested.size());
   if (!task.uses_prior()) return Eigen::MatrixXd::Zero(0, size);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
+  const Eigen::MatrixXd doubt = task.doubt(requested, requested);
   std::vector<Eigen::Index> stated;
   for (Eigen::Index k = 0; k < size; ++k) {
     const std::size_t parameter = requested[static_cast<std::size_t>(k)];
     if (task.surface_of(parameter) != nullptr) continue;
     const double typical = task.parameters[parameter].typical;
-    if (task.doubt(as_index(parameter), as_index(parameter)) > 0.0) {
+    if (doubt(k, k) > 0.0) {
       stated.push_back(k);
     } else if (typical > 0.0) {
       rows(k, k) = 1.0 / typical;
     }
   }
   if (stated.empty()) return rows;
-  std::vector<std::size_t> indices;
-  for (const Eigen::Index k : stated) indices.push_back(requested[static_cast<std::size_t>(k)]);
-  const Eigen::MatrixXd covariance = task.doubt(indices, indices);
+  const Eigen::MatrixXd covariance = doubt(stated, stated);
   // The inverse root, of the correlations: coefficients of one law may differ by powers of ten.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   constexpr double min_eigenvalue = 1e-10;  // nearly certain directions are treated as equal
@@ -50,6 +36,15 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
       solver.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt().cwiseInverse().asDiagonal() *
       solver.eigenvectors().transpose() * scale.asDiagonal();
   return rows;
+}
+
+/// Adds rows of the prior of the requested parameters at these indices.
+void add_rows(PriorRows& prior, const std::vector<Eigen::Index>& columns, const Eigen::MatrixXd& rows,
+              double inflation) {
+  const Eigen::Index count = prior.rows.rows() + rows.rows();
+  prior.rows.conservativeResizeLike(Eigen::MatrixXd::Zero(count, prior.rows.cols()));
+  prior.rows.bottomRows(rows.rows())(Eigen::all, columns) = rows;
+  prior.inflation.conservativeResizeLike(Eigen::VectorXd::Constant(count, inflation));
 }
 
 /// Adds the prior of the effects that a diagnosis added.
@@ -61,11 +56,9 @@ void add_rows_of_added(const FitTask& task, const std::vector<std::size_t>& requ
     if (!(parameter.typical > 0.0) || task.surface_of(requested[k]) != nullptr ||
         std::find(added.begin(), added.end(), parameter.effect) == added.end())
       continue;
-    const Eigen::Index row = prior.rows.rows();
-    prior.rows.conservativeResizeLike(Eigen::MatrixXd::Zero(row + 1, prior.rows.cols()));
     const double deviation =
         std::max(spread_of_sizes * parameter.typical, std::abs(parameter.start - parameter.neutral));
-    prior.rows(row, as_index(k)) = 1.0 / deviation;
+    add_rows(prior, {as_index(k)}, Eigen::MatrixXd::Constant(1, 1, 1.0 / deviation), 1.0);
     prior.centre[as_index(k)] = parameter.neutral;
   }
 }
@@ -73,9 +66,9 @@ void add_rows_of_added(const FitTask& task, const std::vector<std::size_t>& requ
 }  // namespace
 
 PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& requested) {
-  PriorRows prior{stated_rows(task, requested), task.start(requested), {}};
-  add_rows_of_added(task, requested, prior);
+  PriorRows prior{stated_rows(task, requested), task.start(requested)};
   prior.inflation = Eigen::VectorXd::Ones(prior.rows.rows());
+  add_rows_of_added(task, requested, prior);
   for (const SurfaceRoughness& surface : task.surfaces) {
     std::vector<Eigen::Index> columns;
     std::vector<Eigen::Index> own;
@@ -86,10 +79,7 @@ PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& reques
     }
     if (own.empty()) continue;
     const Eigen::MatrixXd penalty = std::sqrt(surface.inflation) * surface.rows()(Eigen::all, own);
-    const Eigen::Index before = prior.rows.rows();
-    prior.rows.conservativeResizeLike(Eigen::MatrixXd::Zero(before + penalty.rows(), prior.rows.cols()));
-    prior.rows.bottomRows(penalty.rows())(Eigen::all, columns) = penalty;
-    prior.inflation.conservativeResizeLike(Eigen::VectorXd::Constant(prior.rows.rows(), surface.inflation));
+    add_rows(prior, columns, penalty, surface.inflation);
     prior.centre(columns).setZero();
   }
   return prior;

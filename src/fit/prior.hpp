@@ -7,10 +7,6 @@
 
 namespace pcor::internal {
 
-/// Covariance of all parameters from the standard errors and covariances in the files, in the order of
-/// `FitTask::parameters`; zero if not stated.
-Eigen::MatrixXd stated_covariance(const ModelDefinition& model, const Reference& reference);
-
 /// Rows W of the Gaussian prior of requested parameters around `centre`: the cost is |W (x - centre)|^2 / 2.
 struct PriorRows {
   Eigen::MatrixXd rows{};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "campaign/reference_id.hpp"
 #include "fit/fit_flights.hpp"
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
@@ -75,22 +74,6 @@ Eigen::MatrixXd second_differences(const Surface& surface) {
     }
   }
   return penalty;
-}
-
-std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other) {
-  std::vector<SurfaceRoughness> surfaces;
-  std::size_t first = 0;
-  const auto add = [&](const Model& of, const std::string& prefix) {
-    for (const ModelEffect& effect : of.effects) {
-      if (effect.is_surface())
-        surfaces.push_back(
-            {prefix + effect.id, first, effect.parameters.size(), second_differences(*effect.surface)});
-      first += effect.parameters.size();
-    }
-  };
-  add(model, "");
-  if (other != nullptr) add(other->model, id_on_other_system("", ""));
-  return surfaces;
 }
 
 bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces,

@@ -38,9 +38,6 @@ struct SurfaceRoughness {
 /// Rows of second differences along both axes of a surface: zero for a plane.
 Eigen::MatrixXd second_differences(const Surface& surface);
 
-/// The surfaces of a model and of the static system of the reference, with initial sizes.
-std::vector<SurfaceRoughness> surfaces_of(const Model& model, const ModelDefinition* other);
-
 /// Finds both sizes of each surface by the marginal likelihood of the residuals at a solution, all others and
 /// the law fitted too. The likelihood is that of least squares over the inflation, so that memory and drift
 /// of the noise do not count as structure (Pauli, Racugno and Ventura 2011, Statistica Sinica 21, 149).
