@@ -136,7 +136,8 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
   return flights.share().of_each_flight<Compared>([&](std::size_t number) {
     const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
     constexpr double fitted = 0.0;  // fraction of the samples
-    const LinearRows rows(residuals_at(samples, task, values), task.model, task.reference,
+    std::vector<Mask> mask;
+    const LinearRows rows(residuals_at(samples, task, values, mask), task.model, task.reference,
                           {Inputs::none, {}, fitted});
     return compared(rows, task, values, requested, false);
   });

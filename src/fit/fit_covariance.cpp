@@ -253,7 +253,7 @@ class ScoreSums {
     auto block = blocks_.begin();
     auto zero = zeros_.begin();
     for (const FlightScores& flight : main_.share().of_each_flight<FlightScores>(
-             [&](std::size_t f) { return scores_of(part, f); }, digest_of(solution_.values))) {
+             [&](std::size_t f) { return scores_of(part, f); }, digest_of(packed(solution_.values)))) {
       covariance_ += flight.covariance;
       *zero++ += flight.zero;
       if (part.shares_noise) roots.push_back(covariance_root(flight.covariance));

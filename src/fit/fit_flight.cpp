@@ -58,15 +58,6 @@ Eigen::MatrixXd by_requested(
   return all;
 }
 
-/// The residuals of a flight with this mask, or with that at these parameters of the fit if it is empty.
-Residuals masked_by(std::vector<Mask>& mask, std::shared_ptr<const FlightSamples> samples,
-                    const FitTask& task, const Eigen::VectorXd& parameters) {
-  if (!mask.empty()) return {std::move(samples), task.model, task.reference, mask};
-  Residuals residuals = residuals_at(std::move(samples), task, parameters);
-  mask = residuals.mask();
-  return residuals;
-}
-
 }  // namespace
 
 Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
@@ -80,10 +71,12 @@ Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& tas
 }
 
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
-                       const Eigen::VectorXd& parameters) {
-  Residuals residuals(std::move(samples), task.model, task.reference, std::vector<Mask>());
-  residuals.set_mask(
-      residuals.masks_at(flight_parameters(residuals, task, parameters).data(), task.options.mask));
+                       const Eigen::VectorXd& parameters, std::vector<Mask>& mask) {
+  Residuals residuals(std::move(samples), task.model, task.reference, mask);
+  if (mask.empty()) {
+    mask = residuals.masks_at(flight_parameters(residuals, task, parameters).data(), task.options.mask);
+    residuals.set_mask(mask);
+  }
   return residuals;
 }
 
@@ -100,7 +93,7 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
                      const Eigen::VectorXd& parameters, std::vector<Mask>& mask)
     : task_(&task),
       moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
-      rows_(masked_by(mask, moving_ ? moving_ : std::move(samples), task, setup.values), task.model,
+      rows_(residuals_at(moving_ ? moving_ : std::move(samples), task, setup.values, mask), task.model,
             task.reference, {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}) {
   if (!moving_) return;
   const Eigen::VectorXd coefficients = flight_parameters(residuals(), task, parameters);

@@ -7,7 +7,6 @@
 
 #include "campaign/gps_rows.hpp"
 #include "numerics/decompositions.hpp"
-#include "parallel/digest.hpp"
 #include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
@@ -42,11 +41,6 @@ Eigen::MatrixXd FitRows::without_offsets(const Eigen::MatrixXd& of, const Eigen:
 
 Eigen::VectorXd Reduction::lengths() const {
   return (factor.leftCols(factor.cols() - 1).colwise().squaredNorm().transpose() + absorbed).cwiseSqrt();
-}
-
-std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
-  const auto* const bytes = reinterpret_cast<const char*>(parameters.data());
-  return digest_of(std::string_view(bytes, static_cast<std::size_t>(parameters.size()) * sizeof(double)));
 }
 
 FitFlights::FitFlights(const FitTask& task, FitSetup setup)
@@ -102,14 +96,12 @@ bool FitFlights::sees_parameters() {
 }
 
 bool FitFlights::masks_change_at(const Eigen::VectorXd& parameters) {
-  bool change = false;
-  for (FitFlights* const each : joint()) {
-    for (const int one : each->of_each(
-             [&](std::size_t, const FitFlight& fit) { return fit.masks_change_at(parameters) ? 1 : 0; },
-             parameters))
-      change = change || one != 0;
-  }
-  return change;
+  return std::any_of(joint_.begin(), joint_.end(), [&](FitFlights* each) {
+    const std::vector<int> changes = each->of_each(
+        [&](std::size_t, const FitFlight& fit) { return fit.masks_change_at(parameters) ? 1 : 0; },
+        parameters);
+    return std::count(changes.begin(), changes.end(), 1) > 0;
+  });
 }
 
 bool FitFlights::rows_are_linear() const {
@@ -234,7 +226,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       part.factor = factor.factor();
       return part;
     };
-    for (const Reduction& part : share().of_each_flight<Reduction>(reduced, digest_of(parameters))) {
+    for (const Reduction& part : share().of_each_flight<Reduction>(reduced, digest_of(packed(parameters)))) {
       sum.add(part.factor);
       whole.absorbed += part.absorbed;
       whole.cost += part.cost;
@@ -277,7 +269,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitIn
       if (!misfit || !sees_law(*each)) return each->residual(flight, parameters);
       return each->residual(flight, parameters) - misfit(*each, flight);
     };
-    fit.state = digest_of(parameters);
+    fit.state = digest_of(packed(parameters));
     each->noise_ = noise_of_flights(share(), each->binned_, fit,
                                     [&](const auto& bins, const auto& some, const auto& left) {
                                       return find_noise(bins, some, left, task_.threads()).model;

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -17,6 +16,7 @@
 #include "fit/fit_task.hpp"
 #include "fit/loss_function.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "parallel/packed.hpp"
 
 namespace pcor::internal {
 
@@ -34,9 +34,9 @@ struct FitSetup {
 Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
                                   const Eigen::VectorXd& parameters);
 
-/// The residuals of a flight, with the masks at these parameters of the fit.
+/// The residuals of a flight, with this mask; if it is empty, it becomes that at these parameters of the fit.
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
-                       const Eigen::VectorXd& parameters);
+                       const Eigen::VectorXd& parameters, std::vector<Mask>& mask);
 
 /// Derivatives of the residual by the requested parameters of the fit, and the residual, hPa, at some
 /// samples.
@@ -79,9 +79,6 @@ class FitFlight {
   std::shared_ptr<FlightSamples> moving_;  // samples of `rows_`, if columns depend on coefficients
   LinearRows rows_;
 };
-
-/// Hash that differs if some bit of the parameters differs.
-std::uint64_t digest_of(const Eigen::VectorXd& parameters);
 
 /// Weighted rows of a flight at given parameters and loss.
 ///
@@ -173,7 +170,7 @@ class FitFlights {
         [&](std::vector<Part>& parts) {
           visit([&](std::size_t number, const FitFlight& fit) { parts[number] = make(number, fit); });
         },
-        digest_of(parameters));
+        digest_of(packed(parameters)));
   }
 
   /// Matrices of the local flights from their samples; empty for the others.
