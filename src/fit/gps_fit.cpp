@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "campaign/gps_noise.hpp"
@@ -38,9 +37,9 @@ struct Part {
   }
 };
 
-/// Noise of a flight, and the relative width of its outliers.
+/// Noise of a flight against one reference, and the relative width of its outliers.
 struct FlightState {
-  std::optional<GpsNoise> noise{};
+  GpsNoise noise;
   Eigen::VectorXd outliers{};
 };
 
@@ -58,8 +57,7 @@ class GpsSolver {
         before_(solution.values(requested_)),
         carried_(Eigen::MatrixXd::Zero(count_, as_index(fixed_coefficients_.size()))),
         columns_(requested_),
-        doubt_of_fixed_(task_.doubt(fixed_coefficients_, fixed_coefficients_)),
-        states_(flights.size()) {
+        doubt_of_fixed_(task_.doubt(fixed_coefficients_, fixed_coefficients_)) {
     if (!is_alone_ && carried_.cols() > 0)
       carried_ =
           covariance.matrix.topRightCorner(count_, carried_.cols()) * information_inverse(doubt_of_fixed_);
@@ -68,7 +66,8 @@ class GpsSolver {
       doubt_of_fixed_.row(as_index(k)).setZero();
       doubt_of_fixed_.col(as_index(k)).setZero();
     }
-    for (auto& each : states_) each.resize(task_.flights.size());
+    for (const FitFlights* const each : flights)
+      states_.emplace_back(each->count(), FlightState{GpsNoise(*gps_kind(each->task().reference))});
     prior_deviation_.resize(count_);
     for (Eigen::Index k = 0; k < count_; ++k)
       prior_deviation_[k] = gps_prior_in_typical_sizes * parameter(k).typical;
@@ -136,12 +135,11 @@ class GpsSolver {
     GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
     prior.deviation << prior_deviation_, nuisance_deviation_;
     prior.mean.head(count_) = before_ - requested_values();
-    if (!state.noise) state.noise.emplace(kind);
-    if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise->white(rows, state.outliers));
-    if (with_noise) state.noise->maximise(rows, state.outliers, prior);
-    WhiteRows white = state.noise->white(rows, state.outliers);
+    if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise.white(rows, state.outliers));
+    if (with_noise) state.noise.maximise(rows, state.outliers, prior);
+    WhiteRows white = state.noise.white(rows, state.outliers);
     if (with_outliers && find_outliers(white, prior, state.outliers))
-      white = state.noise->white(rows, state.outliers);
+      white = state.noise.white(rows, state.outliers);
     std::map<std::int64_t, std::vector<Eigen::Index>> rows_of_blocks;
     for (Eigen::Index row = 0; row < white.rows.rows(); ++row) {
       const double time = rows.time[static_cast<std::size_t>(row) % rows.time.size()];
@@ -451,8 +449,8 @@ class GpsSolver {
   Eigen::MatrixXd doubt_of_fixed_;    // stated covariance of the fixed coefficients on which GPS depends
   Eigen::VectorXd prior_deviation_{};
   Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
-  double warmer_ = 0.0;                           // nuisance of the thermometer, K
-  std::vector<std::vector<FlightState>> states_;  // indexed by reference and flight
+  double warmer_ = 0.0;                             // nuisance of the thermometer, K
+  std::vector<std::vector<FlightState>> states_{};  // indexed by reference and flight
   // Information of the flights about the requested coefficients and the shared nuisances: normal equations,
   // with the nuisances of each flight eliminated.
   Eigen::MatrixXd matrix_{};

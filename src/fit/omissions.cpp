@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
@@ -19,18 +20,15 @@ SquaredResiduals::SquaredResiduals(FitFlights& flights, const Solution& solution
 
 double SquaredResiduals::at(const Eigen::VectorXd& values) const {
   if (!is_linear_) {
-    double sum = 0.0;
-    for (const double part : flights_.of_each(
-             [&](std::size_t, const FitFlight& fit) {
-               const std::vector<double> residual =
-                   fit.residuals().values(flight_parameters(fit.residuals(), flights_.task(), values).data());
-               double squares = 0.0;
-               for (const std::size_t i : fit.kept()) squares += residual[i] * residual[i];
-               return squares;
-             },
-             values))
-      sum += part;
-    return sum;
+    const auto squares_of = [&](std::size_t, const FitFlight& fit) {
+      const std::vector<double> residual =
+          fit.residuals().values(flight_parameters(fit.residuals(), flights_.task(), values).data());
+      double squares = 0.0;
+      for (const std::size_t i : fit.kept()) squares += residual[i] * residual[i];
+      return squares;
+    };
+    const std::vector<double> parts = flights_.of_each(squares_of, values);
+    return std::accumulate(parts.begin(), parts.end(), 0.0);
   }
   const std::vector<std::size_t>& requested = flights_.setup().requested;
   Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(requested.size()) + 1);

@@ -279,12 +279,9 @@ void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovaria
     if (column == covariance.doubts.end()) continue;
     const double size = doubt.sizes()[as_index(d)];
     std::vector<double> row(result.covariance_names.size(), 0.0);
-    for (std::size_t a = 0; a < fitted.parameters.size(); ++a) {
+    for (std::size_t a = 0; a < fitted.parameters.size(); ++a)
       row[a] = size * covariance.by_doubt(as_index(a), column - covariance.doubts.begin());
-      result.covariance[a].push_back(row[a]);
-    }
-    for (std::size_t a = fitted.parameters.size(); a < result.covariance.size(); ++a)
-      result.covariance[a].push_back(0.0);
+    for (std::size_t a = 0; a < row.size(); ++a) result.covariance[a].push_back(row[a]);
     row.push_back(size * size);
     result.covariance.push_back(std::move(row));
     result.covariance_names.push_back(name);
