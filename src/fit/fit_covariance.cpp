@@ -184,6 +184,27 @@ bool is_determined(Eigen::Index coefficient, const Eigen::MatrixXd& rest,
              max_growth * std::abs(all(coefficient, coefficient));
 }
 
+/// Jackknife errors of coefficients: one Newton step from the fit of all blocks to the fit without one block.
+/// Infinite if one block alone determines a coefficient. @param varying coefficients that are not at a bound
+/// @param equations of these coefficients @param scale of `scaled_inverse`
+Eigen::VectorXd jackknife_errors(const std::vector<Eigen::MatrixXd>& blocks,
+                                 const std::vector<Eigen::Index>& varying, const Eigen::MatrixXd& equations,
+                                 const Eigen::MatrixXd& inverse, const Eigen::VectorXd& scale) {
+  Eigen::MatrixXd changes(as_index(varying.size()), as_index(blocks.size()));
+  Eigen::VectorXd undetermined = Eigen::VectorXd::Zero(changes.rows());  // infinite or zero
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const Eigen::MatrixXd rest = equations - blocks[b](varying, varying);
+    const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
+    changes.col(as_index(b)) = inverse_of_rest * blocks[b].rightCols<1>()(varying);
+    for (Eigen::Index k = 0; k < changes.rows(); ++k) {
+      if (!is_determined(k, rest, inverse_of_rest, inverse)) undetermined[k] = infinity;
+    }
+  }
+  const auto count = static_cast<double>(blocks.size());
+  changes.colwise() -= changes.rowwise().mean().eval();
+  return (changes.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt() + undetermined;
+}
+
 /// Sums of the scores of all equations over the flights and references.
 class ScoreSums {
  public:
@@ -213,13 +234,60 @@ class ScoreSums {
     covariance_ += shared_covariance(static_references_, fitted_);
   }
 
-  /// For each block of bins: derivatives of the scores by all parameters, and the scores.
-  const std::vector<Eigen::MatrixXd>& blocks() const { return blocks_; }
-  /// Covariance of the scores by the noise and by the zeros of the flights.
-  const Eigen::MatrixXd& covariance() const { return covariance_; }
-  const Eigen::MatrixXd& by_misfit() const { return by_misfit_; }
-  const Eigen::MatrixXd& by_doubt() const { return by_doubt_; }
-  const std::vector<std::string>& doubts() const { return doubts_; }
+  FitCovariance result() const {
+    const std::vector<std::size_t>& parameters = main_.setup().requested;
+    const std::vector<std::size_t>& held = main_.setup().held;
+    Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted_, size_);
+    for (const Eigen::MatrixXd& block : blocks_) derivatives += block.leftCols(size_);
+    const PriorRows prior = prior_rows(main_.task(), parameters);
+    const double unit = solution_.deviation * solution_.deviation;
+    derivatives.leftCols(fitted_) += unit * prior.rows.transpose() * prior.rows;
+    const Eigen::MatrixXd score =
+        covariance_ + unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
+
+    FitCovariance found;
+    found.information = main_.share().sum_of_each_flight<double>(
+        [&](std::size_t flight) { return information_about_mean(main_.bins(flight), main_.noise(flight)); });
+    found.blocks = blocks_.size();
+    found.matrix = Eigen::MatrixXd::Zero(size_, size_);
+    found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted_, fitted_);
+    found.jackknife = Eigen::VectorXd::Constant(fitted_, nan);
+    const Eigen::MatrixXd fixed = main_.task().doubt(held, held);
+    found.matrix.bottomRightCorner(size_ - fitted_, size_ - fitted_) = fixed;
+    // Parameters at a bound have no variance.
+    std::vector<Eigen::Index> varying;
+    for (Eigen::Index k = 0; k < fitted_; ++k) {
+      if (!solution_.at_bound[parameters[static_cast<std::size_t>(k)]]) varying.push_back(k);
+    }
+    if (varying.empty()) return found;
+    const Eigen::MatrixXd equations_of_all = derivatives(varying, varying);
+    const Eigen::VectorXd scale =
+        equations_of_all.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd inverse = scaled_inverse(equations_of_all, scale);
+    const Eigen::MatrixXd by_fixed = -inverse * derivatives(varying, Eigen::all).rightCols(size_ - fitted_);
+    Eigen::MatrixXd covariance = inverse * score(varying, varying) * inverse.transpose();
+    const Eigen::MatrixXd from_fixed = by_fixed * fixed * by_fixed.transpose();
+    found.by_noise(varying, varying) = covariance + from_fixed;
+    if (misfit_.variance.size() > 0) {
+      const Eigen::MatrixXd by_misfit = inverse * by_misfit_(varying, Eigen::all);
+      covariance += by_misfit * misfit_.variance.asDiagonal() * by_misfit.transpose();
+    }
+    // Fitted coefficients compensate errors of fixed ones, on all flights alike.
+    found.by_flights(varying, varying) = covariance;
+    covariance += from_fixed;
+    const Eigen::MatrixXd by_doubt = -inverse * by_doubt_(varying, Eigen::all);
+    covariance += by_doubt * by_doubt.transpose();
+    found.doubts = doubts_;
+    found.by_doubt = Eigen::MatrixXd::Zero(fitted_, by_doubt.cols());
+    found.by_doubt(varying, Eigen::all) = by_doubt;
+    found.matrix(varying, varying) = 0.5 * (covariance + covariance.transpose());
+    const Eigen::MatrixXd across = by_fixed * fixed;
+    found.matrix.rightCols(size_ - fitted_)(varying, Eigen::all) = across;
+    found.matrix.bottomRows(size_ - fitted_)(Eigen::all, varying) = across.transpose();
+    if (blocks_.size() > 2)
+      found.jackknife(varying) = jackknife_errors(blocks_, varying, equations_of_all, inverse, scale);
+    return found;
+  }
 
  private:
   /// One set of equations with one reference.
@@ -328,8 +396,9 @@ class ScoreSums {
   const Eigen::Index size_;  // fitted parameters, and fixed ones with an error
   const Blocks numbers_;
   const std::vector<std::string> doubts_;
+  // For each block of bins: derivatives of the scores by all parameters, and the scores.
   std::vector<Eigen::MatrixXd> blocks_;
-  Eigen::MatrixXd covariance_;
+  Eigen::MatrixXd covariance_;  // of the scores by the noise and by the zeros of the flights
   Eigen::MatrixXd by_misfit_;
   Eigen::MatrixXd by_doubt_;
   std::vector<Eigen::VectorXd> zeros_;            // one for each flight
@@ -337,87 +406,11 @@ class ScoreSums {
   std::vector<StaticReference> static_references_{};
 };
 
-/// Jackknife errors of coefficients: one Newton step from the fit of all blocks to the fit without one block.
-/// Infinite if one block alone determines a coefficient. @param varying coefficients that are not at a bound
-/// @param equations of these coefficients @param scale of `scaled_inverse`
-Eigen::VectorXd jackknife_errors(const std::vector<Eigen::MatrixXd>& blocks,
-                                 const std::vector<Eigen::Index>& varying, const Eigen::MatrixXd& equations,
-                                 const Eigen::MatrixXd& inverse, const Eigen::VectorXd& scale) {
-  Eigen::MatrixXd changes(as_index(varying.size()), as_index(blocks.size()));
-  Eigen::VectorXd undetermined = Eigen::VectorXd::Zero(changes.rows());  // infinite or zero
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const Eigen::MatrixXd rest = equations - blocks[b](varying, varying);
-    const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
-    changes.col(as_index(b)) = inverse_of_rest * blocks[b].rightCols<1>()(varying);
-    for (Eigen::Index k = 0; k < changes.rows(); ++k) {
-      if (!is_determined(k, rest, inverse_of_rest, inverse)) undetermined[k] = infinity;
-    }
-  }
-  const auto count = static_cast<double>(blocks.size());
-  changes.colwise() -= changes.rowwise().mean().eval();
-  return (changes.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt() + undetermined;
-}
-
 }  // namespace
 
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const Solution& solution,
                              const Misfit& misfit) {
-  const FitFlights& main = *equations.back().flights;
-  const FitTask& task = main.task();
-  const std::vector<std::size_t>& parameters = main.setup().requested;
-  const Eigen::Index fitted = as_index(parameters.size());
-  const Eigen::Index size = fitted + as_index(main.setup().held.size());
-  const ScoreSums sums(equations, solution, misfit);
-  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
-  for (const Eigen::MatrixXd& block : sums.blocks()) derivatives += block.leftCols(size);
-  const PriorRows prior = prior_rows(task, parameters);
-  const double unit = solution.deviation * solution.deviation;
-  derivatives.leftCols(fitted) += unit * prior.rows.transpose() * prior.rows;
-  const Eigen::MatrixXd score =
-      sums.covariance() + unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
-
-  FitCovariance found;
-  found.information = main.share().sum_of_each_flight<double>(
-      [&](std::size_t flight) { return information_about_mean(main.bins(flight), main.noise(flight)); });
-  found.blocks = sums.blocks().size();
-  found.matrix = Eigen::MatrixXd::Zero(size, size);
-  found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted, fitted);
-  found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
-  const Eigen::MatrixXd fixed = task.doubt(main.setup().held, main.setup().held);
-  found.matrix.bottomRightCorner(size - fitted, size - fitted) = fixed;
-  // Parameters at a bound have no variance.
-  std::vector<Eigen::Index> varying;
-  for (Eigen::Index k = 0; k < fitted; ++k) {
-    if (!solution.at_bound[parameters[static_cast<std::size_t>(k)]]) varying.push_back(k);
-  }
-  if (varying.empty()) return found;
-  const Eigen::MatrixXd equations_of_all = derivatives(varying, varying);
-  const Eigen::VectorXd scale =
-      equations_of_all.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse = scaled_inverse(equations_of_all, scale);
-  const Eigen::MatrixXd by_fixed = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
-  Eigen::MatrixXd covariance = inverse * score(varying, varying) * inverse.transpose();
-  const Eigen::MatrixXd from_fixed = by_fixed * fixed * by_fixed.transpose();
-  found.by_noise(varying, varying) = covariance + from_fixed;
-  if (misfit.variance.size() > 0) {
-    const Eigen::MatrixXd by_misfit = inverse * sums.by_misfit()(varying, Eigen::all);
-    covariance += by_misfit * misfit.variance.asDiagonal() * by_misfit.transpose();
-  }
-  // Fitted coefficients compensate errors of fixed ones, on all flights alike.
-  found.by_flights(varying, varying) = covariance;
-  covariance += from_fixed;
-  const Eigen::MatrixXd by_doubt = -inverse * sums.by_doubt()(varying, Eigen::all);
-  covariance += by_doubt * by_doubt.transpose();
-  found.doubts = sums.doubts();
-  found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_doubt.cols());
-  found.by_doubt(varying, Eigen::all) = by_doubt;
-  found.matrix(varying, varying) = 0.5 * (covariance + covariance.transpose());
-  const Eigen::MatrixXd across = by_fixed * fixed;
-  found.matrix.rightCols(size - fitted)(varying, Eigen::all) = across;
-  found.matrix.bottomRows(size - fitted)(Eigen::all, varying) = across.transpose();
-  if (sums.blocks().size() > 2)
-    found.jackknife(varying) = jackknife_errors(sums.blocks(), varying, equations_of_all, inverse, scale);
-  return found;
+  return ScoreSums(equations, solution, misfit).result();
 }
 
 }  // namespace pcor::internal
