@@ -92,11 +92,9 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();
-      result.held_out_derivatives = sample_rows(rows, task, part, values, requested)
-                                        .leftCols(as_index(requested.size()))
-                                        .colwise()
-                                        .mean()
-                                        .transpose();
+      const Eigen::MatrixXd derivatives = sample_rows(rows, task, part, values, requested);
+      result.held_out_derivatives =
+          derivatives.leftCols(as_index(requested.size())).colwise().mean().transpose();
       return;
     }
     result.fitted_blocks = means;
@@ -129,20 +127,6 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
   return result;
 }
 
-/// The flights that are held out.
-std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& values,
-                               const std::vector<std::size_t>& requested) {
-  const FlightSet& flights = task.options.holdout;
-  return flights.share().of_each_flight<Compared>([&](std::size_t number) {
-    const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
-    constexpr double fitted = 0.0;  // fraction of the samples
-    std::vector<Mask> mask;
-    const LinearRows rows(residuals_at(samples, task, values, mask), task.model, task.reference,
-                          {Inputs::none, {}, fitted});
-    return compared(rows, task, values, requested, false);
-  });
-}
-
 /// Flights in the fit, and held-out flights.
 std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, bool is_first_reference) {
   const FitTask& task = flights.task();
@@ -152,7 +136,16 @@ std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& value
         return compared(fit.linear_rows(), task, values, requested, is_first_reference);
       },
       values);
-  for (Compared& one : held_out(task, values, requested)) each.push_back(std::move(one));
+  const FlightSet& holdout = task.options.holdout;
+  const auto held_out = holdout.share().of_each_flight<Compared>([&](std::size_t number) {
+    const auto samples = holdout.samples(number, task.model, task.reference, task.options.mask);
+    constexpr double fitted = 0.0;  // fraction of the samples
+    std::vector<Mask> mask;
+    const LinearRows rows(residuals_at(samples, task, values, mask), task.model, task.reference,
+                          {Inputs::none, {}, fitted});
+    return compared(rows, task, values, requested, false);
+  });
+  each.insert(each.end(), held_out.begin(), held_out.end());
   return each;
 }
 

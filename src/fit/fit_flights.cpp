@@ -50,13 +50,11 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
       doubt_(task.model, task.reference, task.options.trust_reference, !task.shares_system),
       prepared_(setup_.values),
       evaluated_(setup_.values),
+      binned_{std::vector<Binning>(count()), std::vector<Eigen::MatrixXd>(count()),
+              std::vector<Eigen::VectorXd>(count()), std::vector<std::size_t>(count())},
       by_offsets_(count()),
       spikes_(count()),
       masks_of_flights_(count()) {
-  binned_.bins.resize(count());
-  binned_.columns.resize(count());
-  binned_.residuals.resize(count());
-  binned_.reference.resize(count());
   const auto counts = of_each([this](std::size_t number, const FitFlight& fit) {
     prepare(number, fit);
     const std::vector<double>& time = bins(number).time();

@@ -60,8 +60,7 @@ void require_other_pressures(const FlightSet& flights, const ModelDefinition& mo
 void require_sense(const FlightSet& flights, const ModelDefinition& model, const References& references,
                    const RefitOptions& options) {
   if (flights.empty()) throw Error(Error::Code::usage, "no flight to fit; give at least one");
-  const bool is_in_memory = flights.path(0).empty();
-  if (is_in_memory && references.size() > 1)
+  if (flights.path(0).empty() && references.size() > 1)
     throw Error(Error::Code::usage,
                 "samples in memory have the variables of one reference only; give one reference, or the "
                 "paths of the flights");
@@ -357,6 +356,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   const std::optional<GpsFit> gps = add_gps(fitted, task, covariance);
   if (by_gps_alone) {
     result.condition_number = gps->condition_number;
+    result.autocorrelation_time = nan;
     result.estimator = refit_estimator_of_gps;
   }
   FitFlights& flights = *fitted.flights;  // uses masks of the solution
@@ -379,8 +379,6 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
     const auto samples = static_cast<double>(result.samples);
     result.autocorrelation_time =
         std::max(samples / (sums.bulk_squares / samples * covariance.information), 1.0);
-  } else if (by_gps_alone) {
-    result.autocorrelation_time = nan;
   }
   result.r_squared = sums.r_squared(sums.after.squares);
   result.outliers = flights.outliers(solution.values, tukey_width * solution.deviation);

@@ -10,7 +10,6 @@
 namespace pcor::internal {
 
 class FitFlights;
-struct FitTask;
 struct Solution;
 
 /// The prior of the coefficients of a surface: independent second differences along both axes of standard
