@@ -296,7 +296,6 @@ class ScoreSums {
     Eigen::Index first;  // first of its parameters among all
     Eigen::Index width;
     bool is_last;
-    bool is_first_reference;
     bool sees_law;
     bool shares_noise;                         // static pressure in common with other references
     std::vector<Eigen::MatrixXd> states{};     // one for each local flight
@@ -311,7 +310,6 @@ class ScoreSums {
               first,
               as_index(each.parameters.size()),
               is_last,
-              &flights == each.flights.get(),
               each.flights->sees_law(flights),
               is_last && main_.joint().size() > 1 && flights.task().reference.is_static_pressure()};
     if (part.sees_law) part.states = binned_states(flights);
@@ -367,8 +365,9 @@ class ScoreSums {
     const Eigen::MatrixXd left = columns.middleCols(part.first, part.width);
     const Eigen::MatrixXd weighted = flights.weighted(flight, weight.asDiagonal() * left);
     if (part.is_last) {
-      const Eigen::MatrixXd all = joined(
-          part.is_first_reference ? stages_[flight] : std::vector<StageScores>(), time, weighted, fitted_);
+      // Stages are fitted to the first reference.
+      const Eigen::MatrixXd all =
+          joined(&flights == &main_ ? stages_[flight] : std::vector<StageScores>(), time, weighted, fitted_);
       scores.covariance = noise_covariance(all, flights.bins(flight), flights.noise(flight), 0);
       if (part.sees_law) scores.zero = all.colwise().sum();
     } else {

@@ -26,12 +26,13 @@ struct FlightCounts {
   }
 };
 
-std::vector<std::size_t> joined(std::vector<std::size_t> first, const std::vector<std::size_t>& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
 }  // namespace
+
+std::vector<std::size_t> FitSetup::columns() const {
+  std::vector<std::size_t> all = requested;
+  all.insert(all.end(), held.begin(), held.end());
+  return all;
+}
 
 Eigen::MatrixXd FitRows::without_offsets(const Eigen::MatrixXd& of, const Eigen::VectorXd& weights) const {
   if (offsets.cols() == 0) return of;
@@ -46,7 +47,7 @@ Eigen::VectorXd Reduction::lengths() const {
 FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     : task_(task),
       setup_(std::move(setup)),
-      columns_(joined(setup_.requested, setup_.held)),
+      columns_(setup_.columns()),
       doubt_(task.model, task.reference, task.options.trust_reference, !task.shares_system),
       prepared_(setup_.values),
       evaluated_(setup_.values),
@@ -276,7 +277,6 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitIn
 }
 
 double FitFlights::drift_rms() const {
-  if (noise_.empty()) return 0.0;
   const auto& slow = noise_.front().slow;
   return std::sqrt(std::inner_product(slow.begin(), slow.end(), slow.begin(), 0.0));
 }

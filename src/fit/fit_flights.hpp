@@ -28,6 +28,9 @@ struct FitSetup {
   /// If not empty, only samples in these intervals are used, and every interval has a separate offset of
   /// delta-p/p.
   std::vector<Regime> regimes{};
+
+  /// The requested parameters, followed by the held ones.
+  std::vector<std::size_t> columns() const;
 };
 
 /// Residual parameters: from the fit where included, otherwise from their file.
@@ -213,7 +216,7 @@ class FitFlights {
   /// @param misfit excluded from the noise; may be empty
   void measure_noise(const Eigen::VectorXd& parameters, const MisfitInBins& misfit = {});
 
-  /// Combined slow parts of the noise, hPa; zero before the noise was measured.
+  /// Combined slow parts of the noise, hPa, after it was measured.
   double drift_rms() const;
 
   /// Weighs like the same reference in other samples of the same flights.
@@ -249,7 +252,7 @@ class FitFlights {
 
   const FitTask& task_;
   const FitSetup setup_;
-  const std::vector<std::size_t> columns_;  // requested and held parameters
+  const std::vector<std::size_t> columns_;  // parameters with a column
   const ReferenceDoubt doubt_;
   std::vector<bool> linear_;
   bool rows_are_linear_ = true;

@@ -89,7 +89,7 @@ class GpsSolver {
       step();
     }
     const Eigen::VectorXd before_last = requested_values();
-    columns_.insert(columns_.end(), fixed_coefficients_.begin(), fixed_coefficients_.end());
+    columns_ = flights_.front()->setup().columns();
     read(false, false);
     step();
     GpsFit fit = result();

@@ -63,13 +63,11 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   const auto limits = [](const ModelDefinition& model) { return std::isfinite(model.model.policy.minimum); };
   const ModelDefinition* const second = task.reference.model();
   const bool has_minimum = limits(task.model) || (second != nullptr && limits(*second));
-  std::vector<std::string> effects;
-  for (const std::size_t p : requested) {
-    const std::string& effect = task.parameters[p].effect;
-    if (std::find(effects.begin(), effects.end(), effect) == effects.end()) effects.push_back(effect);
-  }
   std::vector<Omission> result;
-  for (const std::string& effect : effects) {
+  for (const std::size_t any : requested) {
+    const std::string& effect = task.parameters[any].effect;
+    const auto is_of_effect = [&effect](const Omission& each) { return each.effect == effect; };
+    if (std::any_of(result.begin(), result.end(), is_of_effect)) continue;
     std::vector<Eigen::Index> others;
     std::vector<std::size_t> parameters;  // other parameters
     Eigen::VectorXd changed = solution.values;
