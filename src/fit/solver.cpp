@@ -160,13 +160,9 @@ class Solver {
     }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns();
-      const bool is_stable = refine();
-      if (!flights_.uses_fixed_jacobian()) {
-        if (is_stable) break;
-        continue;
-      }
-      if (is_stable && has_converged(before)) break;
-      flights_.prepare(solution_.values);
+      const bool has_fixed_jacobian = flights_.uses_fixed_jacobian();
+      if (refine() && (!has_fixed_jacobian || has_converged(before))) break;
+      if (has_fixed_jacobian) flights_.prepare(solution_.values);
     }
     find_bounds();
     return std::move(solution_);
