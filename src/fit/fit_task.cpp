@@ -10,7 +10,6 @@
 #include <pcor/base/error.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/model/formula.hpp>
 #include "campaign/model_parameters.hpp"
 #include "campaign/reference_id.hpp"
 #include "model_io/model_names.hpp"

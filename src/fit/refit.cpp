@@ -10,7 +10,6 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
-#include <pcor/effects/catalogue.hpp>
 #include <pcor/roles/add_effects.hpp>
 #include "campaign/circular_pressure.hpp"
 #include "campaign/model_parameters.hpp"

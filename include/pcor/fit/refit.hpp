@@ -6,9 +6,9 @@
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
 
+#include <array>
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
