@@ -106,11 +106,6 @@ Eigen::MatrixXd LinearRows::evaluate(const std::vector<std::size_t>& samples, co
   return result;
 }
 
-Eigen::MatrixXd LinearRows::means(const Binning& bins, const double* parameters,
-                                  const std::vector<std::size_t>& requested) const {
-  return bin_means(bins, evaluate(used_, parameters, requested));
-}
-
 Eigen::MatrixXd LinearRows::bin_means(const Binning& bins, const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins.size()), rows.cols());
   std::size_t i = 0;

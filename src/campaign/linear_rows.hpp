@@ -78,10 +78,6 @@ class LinearRows {
   /// Bin means of columns that have a row for each used sample.
   Eigen::MatrixXd bin_means(const Binning& bins, const Eigen::MatrixXd& rows) const;
 
-  /// Bin means of derivatives with respect to some parameters, followed by the residual.
-  Eigen::MatrixXd means(const Binning& bins, const double* parameters,
-                        const std::vector<std::size_t>& requested) const;
-
  private:
   void choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs);
   void keep_regimes(const std::vector<Regime>& regimes);

@@ -92,7 +92,7 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();
-      const Eigen::MatrixXd derivatives = sample_rows(rows, task, part, values, requested);
+      const Eigen::MatrixXd derivatives = sample_rows(rows, task, part, values, requested, true);
       result.held_out_derivatives =
           derivatives.leftCols(as_index(requested.size())).colwise().mean().transpose();
       return;

@@ -36,28 +36,6 @@ std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
   return task.shares_system ? residuals.parameters().size() : parameter_count(task.model.model);
 }
 
-/// Derivatives by the requested parameters, and the residual; zero for parameters unknown to the residual.
-/// @param evaluate gives those by known parameters at parameters of the residuals
-Eigen::MatrixXd by_requested(
-    const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& parameters,
-    const std::vector<std::size_t>& requested,
-    const std::function<Eigen::MatrixXd(const double* coefficients, const std::vector<std::size_t>& known)>&
-        evaluate) {
-  const std::map<std::size_t, double> alike = alike_in(task);
-  std::vector<std::size_t> known;
-  std::vector<std::size_t> columns;
-  for (std::size_t k = 0; k < requested.size(); ++k) {
-    if (alike.count(requested[k]) != 0 || requested[k] >= shared_parameters(residuals, task)) continue;
-    known.push_back(requested[k]);
-    columns.push_back(k);
-  }
-  columns.push_back(requested.size());
-  const Eigen::MatrixXd rows = evaluate(flight_parameters(residuals, task, parameters).data(), known);
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.rows(), as_index(requested.size()) + 1);
-  all(Eigen::all, columns) = rows;
-  return all;
-}
-
 }  // namespace
 
 Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& task,
@@ -82,11 +60,20 @@ Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTa
 
 Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
                             const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
-                            const std::vector<std::size_t>& requested) {
-  return by_requested(rows.residuals(), task, parameters, requested,
-                      [&](const double* coefficients, const auto& known) {
-                        return rows.evaluate(samples, coefficients, known, true);
-                      });
+                            const std::vector<std::size_t>& requested, bool as_recorded) {
+  const std::map<std::size_t, double> alike = alike_in(task);
+  std::vector<std::size_t> known;
+  std::vector<std::size_t> columns;
+  for (std::size_t k = 0; k < requested.size(); ++k) {
+    if (alike.count(requested[k]) != 0 || requested[k] >= shared_parameters(rows.residuals(), task)) continue;
+    known.push_back(requested[k]);
+    columns.push_back(k);
+  }
+  columns.push_back(requested.size());
+  const Eigen::VectorXd coefficients = flight_parameters(rows.residuals(), task, parameters);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(as_index(samples.size()), as_index(requested.size()) + 1);
+  all(Eigen::all, columns) = rows.evaluate(samples, coefficients.data(), known, as_recorded);
+  return all;
 }
 
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
@@ -128,9 +115,7 @@ Binning FitFlight::bins(const Eigen::VectorXd& parameters, std::size_t& spikes) 
 
 Eigen::MatrixXd FitFlight::rows(const Binning& bins, const Eigen::VectorXd& parameters,
                                 const std::vector<std::size_t>& requested) const {
-  return by_requested(
-      residuals(), *task_, parameters, requested,
-      [&](const double* coefficients, const auto& known) { return rows_.means(bins, coefficients, known); });
+  return rows_.bin_means(bins, sample_rows(rows_, *task_, kept(), parameters, requested, false));
 }
 
 Eigen::MatrixXd FitFlight::by_offsets(const Binning& bins) const {

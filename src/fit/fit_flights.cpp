@@ -239,7 +239,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
   const auto factor = [&](std::size_t, const FitFlight& fit) {
     const Eigen::MatrixXd rows =
-        sample_rows(fit.linear_rows(), task_, fit.kept(), parameters, setup_.requested);
+        sample_rows(fit.linear_rows(), task_, fit.kept(), parameters, setup_.requested, true);
     TriangularFactor own(rows.cols());
     own.add(rows, Eigen::VectorXd::Ones(rows.rows()));
     return own.factor();

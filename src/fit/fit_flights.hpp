@@ -41,11 +41,11 @@ Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& tas
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
                        const Eigen::VectorXd& parameters, std::vector<Mask>& mask);
 
-/// Derivatives of the residual by the requested parameters of the fit, and the residual, hPa, at some
-/// samples.
+/// Derivatives of the residual by the requested parameters of the fit, zero for those that it does not have,
+/// and the residual, hPa, at some samples. @param as_recorded see `LinearRows::evaluate`
 Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
                             const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
-                            const std::vector<std::size_t>& requested);
+                            const std::vector<std::size_t>& requested, bool as_recorded);
 
 /// The samples of one flight of a fit with one reference.
 ///
