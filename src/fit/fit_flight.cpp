@@ -113,11 +113,6 @@ Binning FitFlight::bins(const Eigen::VectorXd& parameters, std::size_t& spikes) 
   return rows_.bins(series);
 }
 
-Eigen::MatrixXd FitFlight::rows(const Binning& bins, const Eigen::VectorXd& parameters,
-                                const std::vector<std::size_t>& requested) const {
-  return rows_.bin_means(bins, sample_rows(rows_, *task_, kept(), parameters, requested, false));
-}
-
 Eigen::MatrixXd FitFlight::by_offsets(const Binning& bins) const {
   Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(as_index(bins.size()), as_index(rows_.interval_count()));
   const std::vector<double>& static_pressure = *rows_.samples().model.find(Quantity::static_pressure);

@@ -147,7 +147,8 @@ std::vector<Eigen::VectorXd> FitFlights::of_bins(
 }
 
 void FitFlights::evaluate(std::size_t flight, const FitFlight& fit) {
-  const Eigen::MatrixXd rows = fit.rows(bins(flight), evaluated_, columns_);
+  const Eigen::MatrixXd rows = fit.linear_rows().bin_means(
+      bins(flight), sample_rows(fit.linear_rows(), task_, fit.kept(), evaluated_, columns_, false));
   binned_.columns[flight] = rows.leftCols(rows.cols() - 1);
   binned_.residuals[flight] = rows.rightCols(1);
 }

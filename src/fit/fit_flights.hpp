@@ -70,10 +70,6 @@ class FitFlight {
   /// excludes no sample. @param spikes receives the number of excluded samples
   Binning bins(const Eigen::VectorXd& parameters, std::size_t& spikes) const;
 
-  /// Derivatives by some parameters, and the residual, hPa, by columns, one row for each bin.
-  Eigen::MatrixXd rows(const Binning& bins, const Eigen::VectorXd& parameters,
-                       const std::vector<std::size_t>& requested) const;
-
   /// Derivatives by the offsets of the intervals, hPa, in bins.
   Eigen::MatrixXd by_offsets(const Binning& bins) const;
 
