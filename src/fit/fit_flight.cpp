@@ -98,8 +98,7 @@ bool FitFlight::masks_change_at(const Eigen::VectorXd& parameters) const {
 
 Binning FitFlight::bins(const Eigen::VectorXd& parameters, std::size_t& spikes) const {
   const FlightSamples& flight = rows_.samples();
-  const Eigen::VectorXd coefficients = flight_parameters(residuals(), *task_, parameters);
-  const Eigen::VectorXd residual = rows_.evaluate(kept(), coefficients.data(), {});
+  const Eigen::VectorXd residual = sample_rows(rows_, *task_, kept(), parameters, {}, false);
   std::vector<double> series(flight.time.size(), nan);
   for (std::size_t i = 0; i < kept().size(); ++i) series[kept()[i]] = residual[as_index(i)];
   spikes = 0;
