@@ -191,8 +191,7 @@ void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluatio
     }
   }
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(as_index(used.size()), as_index(numbers.size()));
-  residuals.differentiate_along(used.data(), used.size(), residuals.parameters().data(), directions,
-                                derivatives.data());
+  residuals.differentiate_along(used, residuals.parameters().data(), directions, derivatives.data());
   columns(used, numbers) = derivatives.cast<float>();
 }
 

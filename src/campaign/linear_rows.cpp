@@ -97,8 +97,7 @@ Eigen::MatrixXd LinearRows::evaluate(const std::vector<std::size_t>& samples, co
   Eigen::MatrixXd result(as_index(samples.size()), as_index(requested.size()) + 1);
   const auto put = [&](const Residuals& residuals, const std::vector<std::size_t>& derivatives) {
     const auto evaluate = at_sensor_ ? &Residuals::evaluate_at_sensor : &Residuals::evaluate;
-    (residuals.*evaluate)(samples.data(), samples.size(), parameters, derivatives, result.rightCols(1).data(),
-                          result.data());
+    (residuals.*evaluate)(samples, parameters, derivatives, result.rightCols(1).data(), result.data());
   };
   const bool elsewhere = derived_ && !as_recorded && !requested.empty();
   put(elsewhere ? *derived_ : residuals_, requested);

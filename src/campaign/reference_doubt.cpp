@@ -136,8 +136,7 @@ Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSample
               all.begin() + static_cast<std::ptrdiff_t>(parameter_count(model_.model)));
   }
   std::vector<double> residual(samples.size());
-  residuals.evaluate(samples.data(), samples.size(), all.data(), indices_, residual.data(),
-                     derivatives.data());
+  residuals.evaluate(samples, all.data(), indices_, residual.data(), derivatives.data());
   const Eigen::Index sensors = as_index(names_.size()) - law_root_.cols();
   Eigen::MatrixXd changes(derivatives.rows(), as_index(names_.size()));
   changes.leftCols(sensors) = derivatives.leftCols(sensors) * sizes_.head(sensors).asDiagonal();

@@ -15,14 +15,14 @@ std::vector<Quantity> roles_of(const ModelDefinition& file, const ModelSamples& 
 
 }  // namespace
 
-std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, const std::size_t* samples,
-                                   std::size_t count, std::vector<double>& store) {
-  store.resize(columns.size() * count);
+std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns,
+                                   const std::vector<std::size_t>& samples, std::vector<double>& store) {
+  store.resize(columns.size() * samples.size());
   std::vector<Batch::Input> inputs;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    double* const to = store.data() + c * count;
-    for (std::size_t i = 0; i < count; ++i) to[i] = columns[c].values[samples[i]];
-    inputs.push_back({columns[c].quantity, to});
+  double* to = store.data();
+  for (const Batch::Input& column : columns) {
+    inputs.push_back({column.quantity, to});
+    for (const std::size_t sample : samples) *to++ = column.values[sample];
   }
   return inputs;
 }
@@ -39,10 +39,11 @@ ModelOnSamples::ModelOnSamples(const ModelDefinition& file, const ModelSamples& 
   }
 }
 
-std::vector<Batch::Input> ModelOnSamples::gathered(const std::size_t* samples, std::size_t count,
+std::vector<Batch::Input> ModelOnSamples::gathered(const std::vector<std::size_t>& samples,
                                                    const double* parameters,
                                                    std::vector<double>& store) const {
-  std::vector<Batch::Input> inputs = internal::gathered(columns_, samples, count, store);
+  const std::size_t count = samples.size();
+  std::vector<Batch::Input> inputs = internal::gathered(columns_, samples, store);
   for (const Moving& each : moving_) {
     const double change = parameters[each.parameter] - each.column->at;
     for (std::size_t c = 0; c < columns_.size(); ++c) {

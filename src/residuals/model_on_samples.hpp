@@ -9,8 +9,8 @@
 namespace pcor::internal {
 
 /// Columns at some indices, gathered one after another into `store`.
-std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, const std::size_t* samples,
-                                   std::size_t count, std::vector<double>& store);
+std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns,
+                                   const std::vector<std::size_t>& samples, std::vector<double>& store);
 
 /// Model on the samples of a flight, as inputs of its chain.
 class ModelOnSamples {
@@ -25,7 +25,7 @@ class ModelOnSamples {
   const Model& model() const { return model_; }
 
   /// Columns at some indices, gathered one after another into `store`.
-  std::vector<Batch::Input> gathered(const std::size_t* samples, std::size_t count, const double* parameters,
+  std::vector<Batch::Input> gathered(const std::vector<std::size_t>& samples, const double* parameters,
                                      std::vector<double>& store) const;
 
   /// Parameters of the file.

@@ -51,16 +51,14 @@ class ReferenceOnSamples {
   struct Block {
     const std::vector<Batch::Input>& model;
     const std::vector<Batch::Input>& reference;
-    const std::size_t* samples;  ///< indices of the samples
-    std::size_t count;
+    const std::vector<std::size_t>& samples;  ///< indices of the samples
   };
 
   virtual ~ReferenceOnSamples() = default;
 
   /// Reference minus model, hPa.
   virtual void residuals(const Block& block, const double* parameters, double* out) const = 0;
-  virtual void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
-                         Jet* out) const = 0;
+  virtual void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const = 0;
 
   /// Inputs of the reference.
   virtual std::vector<Batch::Input> columns() const { return {}; }
@@ -76,7 +74,7 @@ class ReferenceOnSamples {
   virtual std::size_t reach() const { return 0; }
 
   /// `Residuals::differentiate_along`; called only if `reach()` is not 0.
-  virtual void differentiate_along(const std::size_t*, std::size_t, const double*,
+  virtual void differentiate_along(const std::vector<std::size_t>&, const double*,
                                    const std::vector<Direction>&, double*) const {}
 
   /// Reason why a sample has no residual although the model has its pressures.

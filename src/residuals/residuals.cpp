@@ -61,19 +61,20 @@ std::vector<double> Residuals::values(const double* parameters) const {
   std::iota(all.begin(), all.end(), 0);
   ModelSamples store;
   const std::vector<Batch::Input> inputs = columns_at(parameters, *model_, *samples_, store);
-  reference_->residuals({inputs, reference_->columns(), all.data(), size()}, parameters, result.data());
+  reference_->residuals({inputs, reference_->columns(), all}, parameters, result.data());
   return result;
 }
 
-void Residuals::evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
+void Residuals::evaluate(const std::vector<std::size_t>& samples, const double* parameters,
                          const std::vector<std::size_t>& requested, double* residual,
                          double* derivatives) const {
+  const std::size_t count = samples.size();
   std::vector<double> store;
   std::vector<double> reference_store;
-  const std::vector<Batch::Input> inputs = model_->gathered(samples, count, parameters, store);
+  const std::vector<Batch::Input> inputs = model_->gathered(samples, parameters, store);
   const std::vector<Batch::Input> reference_inputs =
-      gathered(reference_->columns(), samples, count, reference_store);
-  reference_->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
+      gathered(reference_->columns(), samples, reference_store);
+  reference_->residuals({inputs, reference_inputs, samples}, parameters, residual);
 
   const std::size_t of_model = model_->parameters().size();
   std::vector<ColumnOfParameter> curved;
@@ -97,14 +98,15 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
     reference_->model()->batch().differentiate(reference_inputs, by_reference, count, parameters + of_model);
   }
   differentiate(count, {parameters, parameters + parameters_.size()}, curved,
-                [&](const Jet* dual, Jet* out) { reference_->residuals(samples, count, dual, out); });
+                [&](const Jet* dual, Jet* out) { reference_->residuals(samples, dual, out); });
 }
 
-void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
+void Residuals::evaluate_at_sensor(const std::vector<std::size_t>& samples, const double* parameters,
                                    const std::vector<std::size_t>& requested, double* residual,
                                    double* derivatives) const {
   const LamsOnSamples* const laser = reference_->laser();
-  if (laser == nullptr) return evaluate(samples, count, parameters, requested, residual, derivatives);
+  if (laser == nullptr) return evaluate(samples, parameters, requested, residual, derivatives);
+  const std::size_t count = samples.size();
   const std::vector<double>& recorded = *samples_->model.find(Quantity::lams_airspeed);
   const std::vector<double>& sensitivity = laser->sensitivity();
   for (std::size_t i = 0; i < count; ++i) {
@@ -124,8 +126,7 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
   }
   if (!by_defect.empty()) {
     std::vector<double> store;
-    model_->batch().differentiate(model_->gathered(samples, count, parameters, store), by_defect, count,
-                                  parameters);
+    model_->batch().differentiate(model_->gathered(samples, parameters, store), by_defect, count, parameters);
     const std::vector<Jet> constant(parameters, parameters + terms.size());
     for (std::size_t i = 0; i < count; ++i) {
       const double slope = laser->predicted_at(samples[i], constant.data(), Jet(0.0, 0)).v[0];
@@ -142,9 +143,9 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
 
 std::size_t Residuals::reach() const { return reference_->reach(); }
 
-void Residuals::differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
+void Residuals::differentiate_along(const std::vector<std::size_t>& samples, const double* parameters,
                                     const std::vector<Direction>& directions, double* derivatives) const {
-  reference_->differentiate_along(samples, count, parameters, directions, derivatives);
+  reference_->differentiate_along(samples, parameters, directions, derivatives);
 }
 
 std::optional<std::pair<Quantity, std::vector<double>>> Residuals::predicted_sensor(

@@ -155,7 +155,7 @@ std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samp
   std::vector<std::size_t> all(samples->time.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<double> values(all.size());
-  residuals.evaluate_at_sensor(all.data(), all.size(), parameters.data(), {}, values.data(), nullptr);
+  residuals.evaluate_at_sensor(all, parameters.data(), {}, values.data(), nullptr);
   return values;
 }
 

@@ -85,8 +85,7 @@ TEST(SurfaceColumns, AreDerivativesOfTheResidual) {
     std::iota(all.begin(), all.end(), 0);
     std::vector<double> residual(all.size());
     std::vector<double> column(all.size());
-    residuals.evaluate(all.data(), all.size(), parameters.data(), {coefficient}, residual.data(),
-                       column.data());
+    residuals.evaluate(all, parameters.data(), {coefficient}, residual.data(), column.data());
     EXPECT_TRUE(residuals.is_linear()[coefficient]);
     parameters[coefficient] = 0.01;
     const std::vector<double> moved = residuals.values(parameters.data());

@@ -71,7 +71,7 @@ Change change_of(const pcor::RefitResult& fit, const Pair& pair, const std::file
     if (residuals.mask()[i] != pcor::Mask::none) continue;
     std::vector<double> derivatives(own.size());
     double residual = 0.0;
-    residuals.evaluate(&i, 1, start.data(), own, &residual, derivatives.data());
+    residuals.evaluate({i}, start.data(), own, &residual, derivatives.data());
     double variance = 0.0;
     for (std::size_t a = 0; a < own.size(); ++a) {
       for (std::size_t b = 0; b < own.size(); ++b)

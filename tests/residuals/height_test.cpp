@@ -82,7 +82,7 @@ TEST(Height, DerivativesExcludeHeightNoise) {
   const std::size_t sample = 900;
   double residual = 0.0;
   double derivative = 0.0;
-  residuals.evaluate(&sample, 1, residuals.parameters().data(), {0}, &residual, &derivative);
+  residuals.evaluate({sample}, residuals.parameters().data(), {0}, &residual, &derivative);
   EXPECT_GT(std::abs(residual), 0.01);
   EXPECT_NEAR(derivative, 0.0, 1e-9);
 }

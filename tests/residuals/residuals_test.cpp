@@ -59,7 +59,7 @@ void expect_derivatives(const Residuals& tested) {
   std::vector<double> values(indices.size());
   std::vector<double> derivatives(indices.size() * requested.size());
   const std::vector<double>& at = tested.parameters();
-  tested.evaluate(indices.data(), indices.size(), at.data(), requested, values.data(), derivatives.data());
+  tested.evaluate(indices, at.data(), requested, values.data(), derivatives.data());
   const std::vector<double> all = tested.values(at.data());
   for (std::size_t i = 0; i < indices.size(); ++i) EXPECT_NEAR(values[i], all[indices[i]], 1e-10);
   for (std::size_t k = 0; k < requested.size(); ++k) {
@@ -158,8 +158,8 @@ TEST(Residuals, SensorResidualsEqualPressureResidualsToFirstOrder) {
     std::vector<double> pressure(indices.size());
     std::vector<double> at_sensor(indices.size());
     const double* const at = tested.parameters().data();
-    tested.evaluate(indices.data(), indices.size(), at, {}, pressure.data(), nullptr);
-    tested.evaluate_at_sensor(indices.data(), indices.size(), at, {}, at_sensor.data(), nullptr);
+    tested.evaluate(indices, at, {}, pressure.data(), nullptr);
+    tested.evaluate_at_sensor(indices, at, {}, at_sensor.data(), nullptr);
     // The second-order part is 1 cm/s over the airspeed, 1e-4.
     for (std::size_t i = 0; i < indices.size(); ++i)
       EXPECT_NEAR(at_sensor[i] / pressure[i], 1.0, 3e-4) << (with_recovery ? "recovery" : "ambient");

@@ -78,8 +78,7 @@ inline double derivative_error(const pcor::FlightSamples& flight, const pcor::Mo
   std::vector<double> parameters = residuals.parameters();
   std::vector<double> values(indices.size());
   std::vector<double> derivatives(indices.size());
-  residuals.evaluate(indices.data(), indices.size(), parameters.data(), {0}, values.data(),
-                     derivatives.data());
+  residuals.evaluate(indices, parameters.data(), {0}, values.data(), derivatives.data());
   parameters[0] += step;
   const std::vector<double> above = residuals.values(parameters.data());
   parameters[0] -= 2.0 * step;

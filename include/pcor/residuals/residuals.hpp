@@ -61,14 +61,14 @@ class Residuals {
 
   /// Residuals and their derivatives at some samples.
   ///
-  /// @param samples `count` indices of samples
+  /// @param samples indices of the samples
   /// @param parameters all of them
   /// @param requested requested parameters of the derivatives
-  /// @param residual `count` values, hPa
-  /// @param derivatives `requested.size()` columns of `count` values, column by column, hPa per unit of the
-  /// parameter
-  /// Derivatives are exact: linear ones from the model, others by dual numbers through the whole chain.
-  void evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
+  /// @param residual a value for each of the samples, hPa
+  /// @param derivatives `requested.size()` columns with a value for each of the samples, column by column,
+  /// hPa per unit of the parameter Derivatives are exact: linear ones from the model, others by dual numbers
+  /// through the whole chain.
+  void evaluate(const std::vector<std::size_t>& samples, const double* parameters,
                 const std::vector<std::size_t>& requested, double* residual, double* derivatives) const;
 
   /// Variant of `evaluate` with the residual at the sensor of the reference, to which its noise is added: the
@@ -79,7 +79,7 @@ class Residuals {
   /// Delta-p from LAMS is a gain times the noisy speed, and an effect before it (the recovery factor, the
   /// elevation of the beam) changes that gain: least squares of delta-p would reduce the gain to reduce the
   /// noise, and detect a false effect.
-  void evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
+  void evaluate_at_sensor(const std::vector<std::size_t>& samples, const double* parameters,
                           const std::vector<std::size_t>& requested, double* residual,
                           double* derivatives) const;
 
@@ -91,10 +91,10 @@ class Residuals {
   /// dual numbers through the whole chain and through the sums over the window. Samples whose rate is zero
   /// need no finite derivative.
   ///
-  /// @param derivatives `directions.size()` columns of `count` values, column by column, hPa per unit of the
-  /// coefficient
+  /// @param derivatives `directions.size()` columns with a value for each of the samples, column by column,
+  /// hPa per unit of the coefficient
   /// @pre `reach()` is not zero
-  void differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
+  void differentiate_along(const std::vector<std::size_t>& samples, const double* parameters,
                            const std::vector<Direction>& directions, double* derivatives) const;
 
   /// Model column measured by the sensor of the reference, and its noise-free prediction at every sample from

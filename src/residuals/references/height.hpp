@@ -52,7 +52,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   }
 
   template <class S>
-  void find(const Run span, const std::vector<Parts<S>>& parts, const std::size_t* samples, std::size_t count,
+  void find(const Run span, const std::vector<Parts<S>>& parts, const std::vector<std::size_t>& samples,
             S* out) const {
     std::vector<S> risen(span.length(), S(0.0));  // height change, m, since the first sample
     std::vector<std::size_t> missing_steps(span.length(), 0);
@@ -65,7 +65,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
       risen[k] = known ? S(risen[k - 1] + rise) : risen[k - 1];
       missing_steps[k] = missing_steps[k - 1] + (known ? 0 : 1);
     }
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
       out[i] = missing<S>();
       if (samples[i] < span.first + reach() || samples[i] + reach() >= span.end) continue;
       const std::size_t from = samples[i] - span.first - reach();

@@ -22,17 +22,15 @@ class LamsOnSamples final : public ReferenceOnSamples {
       : beam_(*samples.model.find(Quantity::lams_airspeed)), model_(model), samples_(samples.model) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
-    std::vector<double> defect(block.count);
+    std::vector<double> defect(block.samples.size());
     model_.batch().run(block.model,
                        {{Quantity::static_defect, defect.data()}, {Quantity::lams_static_defect, out}},
-                       block.count, parameters);
-    for (std::size_t i = 0; i < block.count; ++i) out[i] -= defect[i];
+                       defect.size(), parameters);
+    for (std::size_t i = 0; i < defect.size(); ++i) out[i] -= defect[i];
   }
 
-  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
-                 Jet* out) const override {
-    for (std::size_t i = 0; i < count; ++i)
-      out[i] = residual_at(samples[i], Jet(beam_[samples[i]]), parameters);
+  void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const override {
+    for (const std::size_t sample : samples) *out++ = residual_at(sample, Jet(beam_[sample]), parameters);
   }
 
   const LamsOnSamples* laser() const override { return this; }

@@ -31,8 +31,8 @@ namespace pcor::internal {
 /// and, with the parts of all samples of `span`, in which `samples` lie with their neighbours,
 ///
 ///     template <class S>
-///     void find(Run span, const std::vector<std::array<S, part_count>>& parts, const std::size_t* samples,
-///               std::size_t count, S* out) const
+///     void find(Run span, const std::vector<std::array<S, part_count>>& parts,
+///               const std::vector<std::size_t>& samples, S* out) const
 template <class Derived, std::size_t part_count>
 class OfNeighbours : public ReferenceOnSamples {
  public:
@@ -45,25 +45,24 @@ class OfNeighbours : public ReferenceOnSamples {
   std::size_t reach() const final { return reach_; }
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
-    find(block.samples, block.count, parameters, out);
+    find(block.samples, parameters, out);
   }
 
-  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
-                 Jet* out) const override {
-    find(samples, count, parameters, out);
+  void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const override {
+    find(samples, parameters, out);
   }
 
-  void differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
+  void differentiate_along(const std::vector<std::size_t>& samples, const double* parameters,
                            const std::vector<Direction>& directions, double* derivatives) const override {
-    if (count == 0) return;
-    const Run span = span_of(samples, count);
+    if (samples.empty()) return;
+    const Run span = span_of(samples);
     std::vector<std::size_t> requested;
     for (const Direction& direction : directions) requested.push_back(direction.parameter);
     std::sort(requested.begin(), requested.end());
     requested.erase(std::unique(requested.begin(), requested.end()), requested.end());
     const std::vector<Parts<double>> values = parts(span, parameters);
     const std::vector<std::vector<Parts<double>>> slopes = slopes_of_parts(span, parameters, requested);
-    std::vector<Jet> out(count);
+    std::vector<Jet> out(samples.size());
     for (std::size_t first = 0; first < directions.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, directions.size() - first);
       std::vector<Parts<Jet>> moved(span.length());
@@ -82,10 +81,9 @@ class OfNeighbours : public ReferenceOnSamples {
             moved[k][part].v[static_cast<Eigen::Index>(d)] = rate * slope[k][part];
         }
       }
-      derived().find(span, moved, samples, count, out.data());
+      derived().find(span, moved, samples, out.data());
       for (std::size_t d = 0; d < width; ++d) {
-        double* const column = derivatives + (first + d) * count;
-        for (std::size_t i = 0; i < count; ++i) column[i] = out[i].v[static_cast<Eigen::Index>(d)];
+        for (const Jet& each : out) *derivatives++ = each.v[static_cast<Eigen::Index>(d)];
       }
     }
   }
@@ -103,8 +101,8 @@ class OfNeighbours : public ReferenceOnSamples {
  private:
   const Derived& derived() const { return static_cast<const Derived&>(*this); }
 
-  Run span_of(const std::size_t* samples, std::size_t count) const {
-    const auto [minimum, maximum] = std::minmax_element(samples, samples + count);
+  Run span_of(const std::vector<std::size_t>& samples) const {
+    const auto [minimum, maximum] = std::minmax_element(samples.begin(), samples.end());
     return {*minimum - std::min(*minimum, reach()), std::min(*maximum + reach() + 1, size_)};
   }
 
@@ -133,10 +131,10 @@ class OfNeighbours : public ReferenceOnSamples {
   }
 
   template <class S>
-  void find(const std::size_t* samples, std::size_t count, const S* parameters, S* out) const {
-    if (count == 0) return;
-    const Run span = span_of(samples, count);
-    derived().find(span, parts(span, parameters), samples, count, out);
+  void find(const std::vector<std::size_t>& samples, const S* parameters, S* out) const {
+    if (samples.empty()) return;
+    const Run span = span_of(samples);
+    derived().find(span, parts(span, parameters), samples, out);
   }
 
   const ModelOnSamples& model_;

@@ -25,16 +25,15 @@ class PressureOnSamples final : public ReferenceOnSamples {
       : pressure_(*samples.reference.find(Quantity::corrected_static_pressure)), model_(model) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
-    model_.port_pressure_plus(Quantity::static_defect, block.model, block.count, parameters, out);
+    model_.port_pressure_plus(Quantity::static_defect, block.model, block.samples.size(), parameters, out);
     const double* const pressure = block.reference.front().values;
-    for (std::size_t i = 0; i < block.count; ++i) out[i] = pressure[i] - out[i];
+    for (std::size_t i = 0; i < block.samples.size(); ++i) out[i] = pressure[i] - out[i];
   }
 
-  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
-                 Jet* out) const override {
-    for (std::size_t i = 0; i < count; ++i) {
+  void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const override {
+    for (const std::size_t sample : samples) {
       State<Jet> state;
-      out[i] = Jet(pressure_[samples[i]]) - model_.corrected_static_pressure(samples[i], parameters, state);
+      *out++ = Jet(pressure_[sample]) - model_.corrected_static_pressure(sample, parameters, state);
     }
   }
 

@@ -24,18 +24,17 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
       : own_(system, samples.reference), model_(model), compared_(compared) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
-    std::vector<double> of_model(block.count);
+    const std::size_t count = block.samples.size();
+    std::vector<double> of_model(count);
     const Quantity added = is_total() ? Quantity::port_dynamic_pressure : Quantity::static_defect;
-    model_.port_pressure_plus(added, block.model, block.count, parameters, of_model.data());
-    own_.port_pressure_plus(added, block.reference, block.count, own_of(parameters), out);
-    for (std::size_t i = 0; i < block.count; ++i) out[i] -= of_model[i];
+    model_.port_pressure_plus(added, block.model, count, parameters, of_model.data());
+    own_.port_pressure_plus(added, block.reference, count, own_of(parameters), out);
+    for (std::size_t i = 0; i < count; ++i) out[i] -= of_model[i];
   }
 
-  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
-                 Jet* out) const override {
-    for (std::size_t i = 0; i < count; ++i)
-      out[i] =
-          pressure_at(own_, samples[i], own_of(parameters)) - pressure_at(model_, samples[i], parameters);
+  void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const override {
+    for (const std::size_t sample : samples)
+      *out++ = pressure_at(own_, sample, own_of(parameters)) - pressure_at(model_, sample, parameters);
   }
 
   std::vector<Batch::Input> columns() const override { return own_.columns(); }

@@ -61,7 +61,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   }
 
   template <class S>
-  void find(const Run span, const std::vector<Parts<S>>& parts, const std::size_t* samples, std::size_t count,
+  void find(const Run span, const std::vector<Parts<S>>& parts, const std::vector<std::size_t>& samples,
             S* out) const {
     std::vector<Sums<S>> sums(span.length() + 1);  // sums over all previous samples
     for (std::size_t k = 0; k < span.length(); ++k) {
@@ -69,7 +69,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
       const S& difference = parts[k][0];
       if (is_finite(difference)) sums[k + 1].add(heading_[span.first + k], difference);
     }
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
       out[i] = missing<S>();
       if (!is_flying(samples[i])) continue;
       const std::size_t k = samples[i] - span.first;
