@@ -70,8 +70,8 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   std::vector<double> seen(size);   // covariance of state and observation
   std::vector<double> ahead(size);  // covariance of the next value of the autoregression with the state
   std::vector<double> decay(slow, 1.0);
-  for (const Segment& segment : bins.segments()) begins_.push_back(as_index(segment.first));
-  std::size_t segment = 0;
+  begins_.setConstant(count, false);
+  for (const Segment& segment : bins.segments()) begins_[as_index(segment.first)] = true;
   std::size_t since_begin = 0;  // bins in this stretch
   double usual = 0.0;           // s from the bin before
   for (Eigen::Index t = 0; t < count; ++t) {
@@ -82,8 +82,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
       usual = since;
     }
     std::copy(decay.begin(), decay.end(), decay_.col(t).data());
-    const bool begins = segment < begins_.size() && begins_[segment] == t;
-    if (begins) since_begin = 0;
+    if (begins_[t]) since_begin = 0;
     if (slow == 0 && since_begin++ >= order_) {
       // An autoregression alone is known when as many values of it were seen: its innovation is all that is
       // new.
@@ -99,8 +98,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
       for (std::size_t i = 0; i <= j; ++i) to[i] = decay[i] * decay[j] * from[i];
       to[j] += (1.0 - decay[j] * decay[j]) * slow_variance[j];
     }
-    if (begins) {
-      ++segment;
+    if (begins_[t]) {
       for (std::size_t j = 0; j < order_; ++j)
         std::reverse_copy(stationary.begin(), stationary.begin() + static_cast<std::ptrdiff_t>(j + 1),
                           column(next, j));
@@ -159,10 +157,8 @@ Eigen::MatrixXd Whitening::operator()(const Eigen::Ref<const Eigen::MatrixXd>& c
     const Eigen::Index width = std::min(columns_at_a_time, columns.cols() - first);
     Row innovation = Row::Zero();
     std::fill(state.begin(), state.end(), Row::Zero());
-    std::size_t segment = 0;
     for (Eigen::Index t = 0; t < columns.rows(); ++t) {
-      if (segment < begins_.size() && begins_[segment] == t) {
-        ++segment;
+      if (begins_[t]) {
         std::fill_n(fast, order, Row::Zero());
       } else {
         Row foreseen = Row::Zero();
@@ -193,14 +189,12 @@ Eigen::VectorXd Whitening::transposed(const Eigen::VectorXd& values) const {
   Eigen::VectorXd result(values.size());
   // Effect of all later values on the state, backwards step by step.
   Eigen::VectorXd later = Eigen::VectorXd::Zero(order + slow);
-  std::size_t segment = begins_.size();
   for (Eigen::Index t = values.size(); t-- > 0;) {
     result[t] = values[t] / deviation_[t] + gain_.col(t).dot(later);
     later[0] -= level_[t] * result[t];
     later.tail(slow).array() -= result[t];
     later.tail(slow).array() *= decay_.col(t).array();
-    if (segment > 0 && begins_[segment - 1] == t) {
-      --segment;
+    if (begins_[t]) {
       later.head(order).setZero();
     } else {
       const double newest = later[0];

@@ -34,12 +34,11 @@ class Whitening {
   std::size_t order_ = 0;  // order of the autoregression, at least one
   std::vector<double> coefficients_{};
   Eigen::VectorXd level_{};
-  std::vector<Eigen::Index> begins_{};  // bins at which a stretch begins
-  Eigen::VectorXd slow_variance_{};     // variance of each drift component
-  Eigen::MatrixXd decay_{};             // decay of each drift component since the previous bin; one column
-                                        // per bin
-  Eigen::MatrixXd gain_{};              // gain of the state; one column per bin
-  Eigen::VectorXd deviation_{};         // standard deviation of the innovations
+  Eigen::Array<bool, Eigen::Dynamic, 1> begins_{};  // whether a stretch begins at each bin
+  Eigen::VectorXd slow_variance_{};                 // variance of each drift component
+  Eigen::MatrixXd decay_{};      // decay of each drift component since the previous bin; one column per bin
+  Eigen::MatrixXd gain_{};       // gain of the state; one column per bin
+  Eigen::VectorXd deviation_{};  // standard deviation of the innovations
   double log_determinant_ = 0.0;
 };
 
