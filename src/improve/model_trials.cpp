@@ -171,7 +171,7 @@ TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size
     if (part.empty()) continue;
     const std::vector<double> was = only_at(flight.residuals[before], part);
     const std::vector<double> is = only_at(flight.residuals[after], part);
-    const Gain gain =
+    const Estimate gain =
         gain_between(*flight.samples, was, is, noise_of_flight(*flight.samples, is), flight.window);
     result.gain += gain.value;
     variance += gain.error * gain.error;

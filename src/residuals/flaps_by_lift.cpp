@@ -9,6 +9,7 @@
 #include <pcor/physics/lift.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include "numerics/decompositions.hpp"
+#include "numerics/least_squares.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 
@@ -34,12 +35,6 @@ constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
 constexpr std::size_t min_fast = 15;         // pieces
 constexpr int rounds = 10;
 
-/// Relative deficit of the angle compared with the lift, and its standard error.
-struct Deficit {
-  double value = 0.0;
-  double error = 0.0;
-};
-
 /// Means of 20 s.
 struct Piece {
   std::size_t first = 0;  ///< sample
@@ -50,8 +45,8 @@ struct Piece {
   double angle = 0.0;     ///< recorded angle of attack
   double airspeed = 0.0;  ///< indicated airspeed from the mean dynamic pressure, m/s
   double weight = 0.0;    ///< its weight in the fit of the clean wing
-  Deficit deficit{};
-  double out = 0.0;  ///< probability of flaps extended
+  Estimate deficit{};     ///< relative deficit of the angle compared with the lift
+  double out = 0.0;       ///< probability of flaps extended
 };
 
 double load_factor_at(const FlightSamples& samples, std::size_t i) {
@@ -141,7 +136,7 @@ class LiftLaw {
   double deviation() const { return deviation_; }
   double departure(const Piece& piece) const { return piece.angle - row_of(piece).dot(coefficients_); }
 
-  Deficit deficit(const Piece& piece) const {
+  Estimate deficit(const Piece& piece) const {
     const Eigen::Vector4d row = row_of(piece);
     const double needed = row.tail<3>().dot(coefficients_.tail<3>());
     const double lever = slope_error * coefficients_[1] * (piece.lift - mean_lift_) / scale_;

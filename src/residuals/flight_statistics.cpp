@@ -108,8 +108,8 @@ ResidualSums flaps_out(const Residuals& residuals, const double* parameters) {
   return sums_of_flight(residuals.samples(), masked(residuals.values(parameters), masks, Mask::flaps));
 }
 
-Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
-                  const std::vector<double>& after, const NoiseFloor& noise, double window) {
+Estimate gain_between(const FlightSamples& samples, const std::vector<double>& before,
+                      const std::vector<double>& after, const NoiseFloor& noise, double window) {
   const double segment = std::max(60.0, 2.0 * window);  // s
   const double weight = window > samples.step ? samples.step / window : 1.0;
   std::vector<double> gains;
@@ -131,16 +131,11 @@ Gain gain_between(const FlightSamples& samples, const std::vector<double>& befor
     gains.push_back(gain);
     changes.push_back(change);
   }
-  Gain sum;
-  sum.value = std::accumulate(gains.begin(), gains.end(), 0.0);
-  if (gains.size() < 2) {
-    sum.error = std::abs(sum.value) * std::sqrt(for_freedom(1.0));
-    return sum;
-  }
+  const double sum = std::accumulate(gains.begin(), gains.end(), 0.0);
+  if (gains.size() < 2) return {sum, std::abs(sum) * std::sqrt(for_freedom(1.0))};
   // a^2 - b^2 = 2 b (a - b) + (a - b)^2: only the product with the residual b of the better model is noise.
-  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= std::copysign(changes[k], sum.value);
-  sum.error = std::sqrt(variance_of_sum(gains));
-  return sum;
+  for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= std::copysign(changes[k], sum);
+  return {sum, std::sqrt(variance_of_sum(gains))};
 }
 
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual) {

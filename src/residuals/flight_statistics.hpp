@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "numerics/least_squares.hpp"
+
 namespace pcor::internal {
 
 // Definition of rms, bias and noise of a residual for compare, refit, diagnose and improve. The residual is
@@ -56,19 +58,15 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
 /// Sums over the samples that are excluded only because of their flaps.
 ResidualSums flaps_out(const Residuals& residuals, const double* parameters);
 
-/// Decrease of squared residuals, in units of the noise, and its standard error with the memory of the noise,
-/// from the variation between minutes, or longer stretches. Increased for its few degrees of freedom: a
-/// change without a gain exceeds 1.645 errors once in 20.
-struct Gain {
-  double value = 0.0;
-  double error = 0.0;
-};
-
-/// Gain from residuals `before` to residuals `after`, both of all samples; NaN where excluded. Zero without
-/// samples; a single minute is never significant.
+/// Decrease of squared residuals, in units of the noise, from `before` to `after`, both of all samples; NaN
+/// where excluded. Zero without samples; a single minute is never significant.
+///
+/// The standard error includes the memory of the noise, from the variation between minutes, or longer
+/// stretches. It is increased for its few degrees of freedom: a change without a gain exceeds 1.645 errors
+/// once in 20.
 /// @param window of a residual, s: the samples within count as one; 0 for one sample
-Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
-                  const std::vector<double>& after, const NoiseFloor& noise, double window = 0.0);
+Estimate gain_between(const FlightSamples& samples, const std::vector<double>& before,
+                      const std::vector<double>& after, const NoiseFloor& noise, double window = 0.0);
 
 /// Means of a residual over blocks of five minutes with values for at least half of the samples.
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual);

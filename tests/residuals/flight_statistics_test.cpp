@@ -9,7 +9,7 @@
 
 using pcor::FlightSamples;
 using pcor::NoiseFloor;
-using pcor::internal::Gain;
+using pcor::internal::Estimate;
 using pcor::internal::gain_between;
 
 namespace {
@@ -18,7 +18,7 @@ constexpr std::size_t records = 720;  // two hours
 constexpr double step = 10.0;         // s
 constexpr double sure = 1.645;        // standard errors
 
-Gain gain(const std::vector<double>& before, const std::vector<double>& after) {
+Estimate gain(const std::vector<double>& before, const std::vector<double>& after) {
   FlightSamples samples;
   samples.step = step;
   for (std::size_t i = 0; i < after.size(); ++i) samples.time.push_back(step * static_cast<double>(i));
@@ -60,7 +60,7 @@ TEST(Gain, DriftIsNoGain) {
       double variance = 0.0;
       for (int flight = 0; flight < 2; ++flight) {
         const std::vector<double> truth = noise(memory, engine);
-        const Gain found = gain(shifted(truth, small), shifted(truth, -small));
+        const Estimate found = gain(shifted(truth, small), shifted(truth, -small));
         value += found.value;
         variance += found.error * found.error;
       }
@@ -80,7 +80,7 @@ TEST(Gain, SmallGainInWhiteNoiseIsSignificant) {
   int wins = 0;
   for (int trial = 0; trial < trials; ++trial) {
     const std::vector<double> after = noise(0.0, engine);
-    const Gain found = gain(shifted(after, error), after);
+    const Estimate found = gain(shifted(after, error), after);
     if (found.value > sure * found.error) ++wins;
   }
   // A tenth of the power may be lost; 400 trials determine it to 2 %.
@@ -93,15 +93,15 @@ TEST(Gain, GainInOneClimbIsSignificant) {
   const std::vector<double> after = noise(0.0, engine);
   std::vector<double> before = after;
   for (std::size_t i = 100; i < 280; ++i) before[i] += 3.0;
-  const Gain found = gain(before, after);
+  const Estimate found = gain(before, after);
   EXPECT_GT(found.value, 3.0 * found.error);
-  const Gain loss = gain(after, before);
+  const Estimate loss = gain(after, before);
   EXPECT_EQ(loss.value, -found.value);
   EXPECT_LT(loss.value, -3.0 * loss.error);
 }
 
 TEST(Gain, OneMinuteIsNeverSignificant) {
-  const Gain found = gain({5.0, 5.0, 5.0}, {0.0, 0.0, 0.0});
+  const Estimate found = gain({5.0, 5.0, 5.0}, {0.0, 0.0, 0.0});
   EXPECT_EQ(found.value, 75.0);
   EXPECT_GT(sure * found.error, found.value);
 }
