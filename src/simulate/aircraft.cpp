@@ -12,39 +12,31 @@ namespace {
 // HARCO). Wing area, Mach limit, cabin: manufacturer's data. Radomes: NCAR processing algorithms sec. 4.5.
 // Envelope: speeds and heights of research flights (memo, QAtools). Drag, power, fuel flow, flaps: estimates.
 
-struct AircraftNumber {
-  double AircraftInfo::*member;
-  double c130, gv;
-};
-
-constexpr AircraftNumber numbers[] = {
-    {&AircraftInfo::wing_area, 162.1, 105.6},
-    // The next two are fitted: C-130 to the angles of the memo's envelope at 56 t, GV to 2.5 deg in cruise.
-    {&AircraftInfo::lift_slope, 0.0905, 0.085},
-    {&AircraftInfo::zero_lift, -4.3, -0.4},
-    {&AircraftInfo::drag_constant, 0.035, 0.018},
-    {&AircraftInfo::induced_drag, 0.045, 0.050},
-    {&AircraftInfo::weight, 58000.0, 36000.0},
-    {&AircraftInfo::fuel_flow, 0.6, 0.36},
-    {&AircraftInfo::power, 11.0e6, 18.0e6},
-    {&AircraftInfo::cabin_differential, 517.0, 701.0},  // 7.5 psi, 10.17 psi
-    {&AircraftInfo::min_speed, 75.0, 110.0},
-    {&AircraftInfo::max_speed, 155.0, 260.0},
-    {&AircraftInfo::lift_off_speed, 65.0, 75.0},
-    {&AircraftInfo::max_mach, 0.62, 0.885},
-    {&AircraftInfo::ceiling, 9000.0, 15000.0},
-    {&AircraftInfo::climb_rate, 5.0, 8.0},
-    {&AircraftInfo::speed_run_low, 98.0, 158.0},
-    {&AircraftInfo::speed_run_high, 150.0, 225.0},
-    {&AircraftInfo::speed_run_rate, 0.25, 0.35},
-};
-
 AircraftInfo make(Scenario::Aircraft aircraft) {
   const bool is_c130 = aircraft == Scenario::Aircraft::c130;
   AircraftInfo a;
   a.type = is_c130 ? "C-130" : "GV";
   a.registration = is_c130 ? "N130AR" : "N677F";
-  for (const AircraftNumber& number : numbers) a.*number.member = is_c130 ? number.c130 : number.gv;
+  const auto choose = [is_c130](double c130, double gv) { return is_c130 ? c130 : gv; };
+  a.wing_area = choose(162.1, 105.6);
+  // The next two are fitted: C-130 to the angles of the memo's envelope at 56 t, GV to 2.5 deg in cruise.
+  a.lift_slope = choose(0.0905, 0.085);
+  a.zero_lift = choose(-4.3, -0.4);
+  a.drag_constant = choose(0.035, 0.018);
+  a.induced_drag = choose(0.045, 0.050);
+  a.weight = choose(58000.0, 36000.0);
+  a.fuel_flow = choose(0.6, 0.36);
+  a.power = choose(11.0e6, 18.0e6);
+  a.cabin_differential = choose(517.0, 701.0);  // 7.5 psi, 10.17 psi
+  a.min_speed = choose(75.0, 110.0);
+  a.max_speed = choose(155.0, 260.0);
+  a.lift_off_speed = choose(65.0, 75.0);
+  a.max_mach = choose(0.62, 0.885);
+  a.ceiling = choose(9000.0, 15000.0);
+  a.climb_rate = choose(5.0, 8.0);
+  a.speed_run_low = choose(98.0, 158.0);
+  a.speed_run_high = choose(150.0, 225.0);
+  a.speed_run_rate = choose(0.25, 0.35);
   if (is_c130) {
     a.thermometer = {"TTRR", {0.95, 0.0, 0.0, 0.0}};
     a.second_thermometer = {"RTF1", {0.9959, 0.0283, 0.0374, 0.0762}};

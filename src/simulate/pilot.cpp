@@ -10,6 +10,7 @@
 namespace pcor::internal::simulate {
 namespace {
 
+constexpr double degree = constants::radians_per_degree;
 constexpr double metres_per_degree = 111195.0;  // latitude, mean earth
 constexpr double gradient_length = 1e5;         // m; slopes of isobars are per 100 km
 constexpr double roll_rate = 5.0;               // deg/s, of research turns
@@ -117,7 +118,7 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   follow(followed_across_, across, follows_gusts);
   const double mean_wind =
       atmosphere.wind_speed + atmosphere.wind_shear * 1e-3 * (height_ - atmosphere.ground_height);
-  const double from = constants::radians_per_degree * atmosphere.wind_from;
+  const double from = degree * atmosphere.wind_from;
   const double drift = kept(atmosphere.wind_drift_time);
   const double wind_east =
       aloft * (-mean_wind * std::sin(from) + atmosphere.wind_drift * drift_east_.next(drift));
@@ -130,8 +131,7 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   const double mach = airspeed / speed_of_sound(air);
   const double steady_mach = std::min(speed_ / speed_of_sound(air), 0.99);
   const double flow = 0.5 * density(air) * std::max(speed_ * speed_, slowest);
-  const double load =
-      (g + command.vertical_acceleration) / (g * std::cos(constants::radians_per_degree * roll_));
+  const double load = (g + command.vertical_acceleration) / (g * std::cos(degree * roll_));
   double attack = lift_attack(aircraft_, weight_, load, flow, steady_mach, flaps_);
   if (on_ground_) {
     const double rotating = std::clamp((speed_ / aircraft_.lift_off_speed - 0.9) / 0.1, 0.0, 1.0);
@@ -148,25 +148,22 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
                             leg.position, height_, speed_, steady_mach, aircraft_.max_mach, aircraft_.type));
   }
   const double climb = std::clamp(vertical_speed_ / std::max(speed_, 10.0), -1.0, 1.0);  // sine of the path
-  const double per_speed = 1.0 / (constants::radians_per_degree * std::max(airspeed, 10.0));
+  const double per_speed = 1.0 / (degree * std::max(airspeed, 10.0));
   // The axes of the aircraft about the direction in which it moves through the air: of its velocity, in units
   // of the forward part, the part to the right and the part down after the roll.
-  const double slips = std::tan(constants::radians_per_degree * command.sideslip);
-  const double sinks = std::tan(constants::radians_per_degree * attack);
-  const double right = slips * std::cos(constants::radians_per_degree * roll_) -
-                       sinks * std::sin(constants::radians_per_degree * roll_);
-  const double down = slips * std::sin(constants::radians_per_degree * roll_) +
-                      sinks * std::cos(constants::radians_per_degree * roll_);
+  const double slips = std::tan(degree * command.sideslip);
+  const double sinks = std::tan(degree * attack);
+  const double right = slips * std::cos(degree * roll_) - sinks * std::sin(degree * roll_);
+  const double down = slips * std::sin(degree * roll_) + sinks * std::cos(degree * roll_);
   const double climbs = climb * std::sqrt(1.0 + right * right / (1.0 + down * down));
   const double pitch = std::atan(down) + std::asin(std::clamp(climbs, -1.0, 1.0));
-  const double heading = direction_ - std::atan2(right, std::cos(pitch) + down * std::sin(pitch)) /
-                                          constants::radians_per_degree;
+  const double heading = direction_ - std::atan2(right, std::cos(pitch) + down * std::sin(pitch)) / degree;
   const double level_speed = speed_ * std::sqrt(1.0 - climb * climb);
-  const double sine = std::sin(constants::radians_per_degree * direction_);
-  const double cosine = std::cos(constants::radians_per_degree * direction_);
+  const double sine = std::sin(degree * direction_);
+  const double cosine = std::cos(degree * direction_);
   const double ground_east = level_speed * sine + wind_east - followed_across_ * cosine;
   const double ground_north = level_speed * cosine + wind_north + followed_across_ * sine;
-  const double track = std::atan2(ground_east, ground_north) / constants::radians_per_degree;
+  const double track = std::atan2(ground_east, ground_north) / degree;
 
   truth_.pressure.push_back(air.pressure);
   truth_.total_pressure.push_back(total_pressure(air, airspeed));
@@ -176,7 +173,7 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   truth_.mach.push_back(mach);
   truth_.attack.push_back(attack + (up - followed_up_) * per_speed);
   truth_.sideslip.push_back(command.sideslip + (across - followed_across_) * per_speed);
-  truth_.pitch.push_back(pitch / constants::radians_per_degree);
+  truth_.pitch.push_back(pitch / degree);
   truth_.roll.push_back(roll_);
   truth_.heading.push_back(heading);
   truth_.track.push_back(track + 360.0 * std::round((direction_ - track) / 360.0));
@@ -184,9 +181,8 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   truth_.altitude.push_back(height_);
   truth_.vertical_speed.push_back(vertical_speed_);
   truth_.latitude.push_back(scenario_.latitude + north_ / metres_per_degree);
-  truth_.longitude.push_back(
-      scenario_.longitude +
-      east_ / (metres_per_degree * std::cos(constants::radians_per_degree * scenario_.latitude)));
+  truth_.longitude.push_back(scenario_.longitude +
+                             east_ / (metres_per_degree * std::cos(degree * scenario_.latitude)));
   truth_.height.push_back(height_ - atmosphere.ground_height);
   truth_.normal_acceleration.push_back((load - 1.0) * g);
   truth_.forward_acceleration.push_back(command.acceleration * std::cos(pitch) +
@@ -222,8 +218,7 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   height_ += (vertical_speed_ + 0.5 * command.vertical_acceleration * time_step) * time_step;
   vertical_speed_ += command.vertical_acceleration * time_step;
   if (!on_ground_)
-    direction_ += g * std::tan(constants::radians_per_degree * roll_) / std::max(speed_, slowest) /
-                  constants::radians_per_degree * time_step;
+    direction_ += g * std::tan(degree * roll_) / std::max(speed_, slowest) / degree * time_step;
   speed_ = std::max(0.0, speed_ + command.acceleration * time_step);
   approach(roll_, command.roll, roll_rate);
   approach(flaps_, command.flaps, flap_rate);
