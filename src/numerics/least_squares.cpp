@@ -30,8 +30,7 @@ std::vector<std::size_t> ends_of_flights(const std::vector<double>& time) {
 }
 
 std::vector<double> part_of(const std::vector<double>& values, std::size_t first, std::size_t last) {
-  return {values.begin() + static_cast<std::ptrdiff_t>(first),
-          values.begin() + static_cast<std::ptrdiff_t>(last)};
+  return {values.data() + first, values.data() + last};
 }
 
 /// The covariance matrix of the sums (column . noise) over the samples that have a residual, which is what

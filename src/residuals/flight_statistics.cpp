@@ -44,9 +44,7 @@ double variance_of_sum(const std::vector<double>& values) {
   constexpr std::size_t min_band = 6;
   const std::vector<double> powers = powers_of(values);
   const auto mean = [&powers](std::size_t first, std::size_t end) {
-    const auto begin = powers.begin();
-    return std::accumulate(begin + static_cast<std::ptrdiff_t>(first),
-                           begin + static_cast<std::ptrdiff_t>(end), 0.0) /
+    return std::accumulate(powers.data() + first, powers.data() + end, 0.0) /
            static_cast<double>(end - first);
   };
   std::size_t band = powers.size();

@@ -58,11 +58,6 @@ PortState port_state(const Scenario::System& system, const Truth& truth, const A
           0.0};
 }
 
-/// The air at a step of the flight.
-Air air_at(const Truth& truth, std::size_t i) {
-  return {truth.pressure[i], truth.temperature[i], truth.vapor_pressure[i]};
-}
-
 /// Root of `miss` by the secant method, from two values, of which the first misses by `miss_last`.
 template <class Miss>
 double root_of(const Miss& miss, double last, double miss_last, double now, double tolerance) {
@@ -152,18 +147,15 @@ Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftI
 PairReading read_pair(const Scenario::System& system, const SystemFaults& faults, const Truth& truth,
                       const AircraftInfo& aircraft) {
   const std::size_t steps = truth.size();
-  PairReading reading;
-  reading.defect.resize(steps);
-  Series line(steps);
-  Series total(steps);
+  PairReading reading{Series(steps), Series(steps), Series(steps)};
+  auto& [line, total, defect] = reading;  // pressures in the lines, then as measured
   for (std::size_t i = 0; i < steps; ++i) {
     PortState state = port_state(system, truth, aircraft, i);
     state.total -= at(faults.total_loss, i);
     state.extra = at(faults.static_defect, i);
     total[i] = state.total;
-    const double defect = static_defect(faults.law, state);
-    const double port = truth.pressure[i] - defect;
-    reading.defect[i] = defect;
+    defect[i] = static_defect(faults.law, state);
+    const double port = truth.pressure[i] - defect[i];
     line[i] = port + faults.leak * (truth.cabin_pressure[i] - port) + at(faults.static_head, i);
   }
   line = with_response(std::move(line), faults.static_lag);
@@ -172,8 +164,6 @@ PairReading read_pair(const Scenario::System& system, const SystemFaults& faults
     total[i] = (total[i] - line[i]) * (1.0 + faults.dynamic_gain) + at(faults.dynamic_error, i);
     line[i] += at(faults.static_error, i);
   }
-  reading.static_pressure = std::move(line);
-  reading.dynamic_pressure = std::move(total);
   return reading;
 }
 
@@ -235,7 +225,8 @@ Series read_thermometer(const Thermometer& thermometer, const Faults& faults, co
   Series temperature(truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double recovery = thermometer.recovery_factor(std::max(truth.mach[i], slowest)) + faults.recovery;
-    temperature[i] = recovery_temperature(air_at(truth, i), truth.airspeed[i], recovery);
+    const Air air{truth.pressure[i], truth.temperature[i], truth.vapor_pressure[i]};
+    temperature[i] = recovery_temperature(air, truth.airspeed[i], recovery);
   }
   temperature = with_response(std::move(temperature), faults.temperature_lag);
   for (std::size_t i = 0; i < truth.size(); ++i) temperature[i] += at(faults.temperature_error, i);

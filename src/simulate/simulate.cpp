@@ -216,10 +216,9 @@ LegFlown describe(const LegSteps& steps, const Truth& truth, double start) {
   leg.first_time = start + time_step * static_cast<double>(steps.first);
   leg.last_time = start + time_step * static_cast<double>(steps.last);
   const auto extremes = [&](const Series& series) {
-    const auto begin = series.begin();
-    const auto found = std::minmax_element(begin + static_cast<std::ptrdiff_t>(steps.first),
-                                           begin + static_cast<std::ptrdiff_t>(steps.last));
-    return std::pair{*found.first, *found.second};
+    const auto [least, greatest] =
+        std::minmax_element(series.data() + steps.first, series.data() + steps.last);
+    return std::pair{*least, *greatest};
   };
   std::tie(leg.min_speed, leg.max_speed) = extremes(truth.airspeed);
   std::tie(leg.min_attack, leg.max_attack) = extremes(truth.attack);
