@@ -218,8 +218,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   const Estimate offset = outside.fit.coefficients[0];
   decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = location(all, clear);
-  const double noise =
-      noise_floor(clear_values, contiguous_segments(clear_values, all.time, all.step), all.step).rms;
+  const double noise = noise_floor(clear_values, all.time, all.step).rms;
   result.finding = fmt::format(
       "Out of cloud the laser temperature minus the thermometer temperature is {}, with a scatter of {:.2f} "
       "K, of which {:.2f} K is noise",

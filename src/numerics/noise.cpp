@@ -75,7 +75,8 @@ double robust_standard_deviation(std::vector<double> values) {
   return deviation_of_median * median(std::move(values));
 }
 
-NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Segment>& segments, double step) {
+NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<double>& time, double step) {
+  const std::vector<Segment> segments = contiguous_segments(values, time, step);
   NoiseFloor floor;
   floor.local_rms.assign(values.size(), nan);
   const std::vector<double> whole_variance = difference_variances(values, segments);

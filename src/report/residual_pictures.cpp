@@ -39,8 +39,7 @@ double noise_autocorrelation(const Report& report, const std::string& residual) 
   const ReportColumn* const column = column_named(report.columns, residual);
   const double step = step_of(report);
   if (column == nullptr || !(step > 0.0)) return 1.0;
-  return noise_floor(column->values, contiguous_segments(column->values, report.time, step), step)
-      .autocorrelation_time;
+  return noise_floor(column->values, report.time, step).autocorrelation_time;
 }
 
 void add_distributions(Report& report, const std::vector<std::string>& residuals) {

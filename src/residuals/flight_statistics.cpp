@@ -72,7 +72,7 @@ std::vector<double> masked(const std::vector<double>& values, const std::vector<
 }
 
 NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual) {
-  return noise_floor(residual, contiguous_segments(residual, samples.time, samples.step), samples.step);
+  return noise_floor(residual, samples.time, samples.step);
 }
 
 ResidualSums sums_of_samples(const std::vector<double>& residual, const NoiseFloor& noise) {

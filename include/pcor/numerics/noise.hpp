@@ -36,10 +36,10 @@ struct NoiseFloor {
   double autocorrelation_time = 1.0;
 };
 
-/// @param values the series, NaN if missing; @param segments its `contiguous_segments`.
-/// @param step the usual step, s.
+/// @param values the series, NaN if missing; its differences are within its `contiguous_segments`
+/// @param time s, as many entries as `values`; @param step the usual step, s
 /// NaN for rms if the series has fewer than 30 differences.
-NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Segment>& segments, double step);
+NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<double>& time, double step);
 
 /// Coefficients a_1 ... a_p of the stationary process e(t) = a_1 e(t-1) + ... + a_p e(t-p) + innovation
 /// fitted to a series: Burg's method over all segments together, order 0 to 20 with the least Bayesian
