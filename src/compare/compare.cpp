@@ -239,7 +239,7 @@ void add_variances(std::size_t model, const FlightPartition& share,
         const SummedRecords& summed = records[f][model];
         std::vector<double> result;
         for (const std::vector<std::size_t>& part : summed.parts)
-          result.push_back(part.empty() ? 0.0 : summed.residual.variance_of_sum(part, noise[f], 0));
+          result.push_back(part.empty() ? 0.0 : summed.residual.variance_of_sum(part, noise[f]));
         return result;
       });
   for (std::size_t f = 0; f < parts.size(); ++f) {

@@ -67,8 +67,8 @@ Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const doubl
   return within + noise_covariance(sums, bins_, noise, flight);
 }
 
-double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,
-                                       std::size_t flight) const {
+double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records,
+                                       const NoiseModel& noise) const {
   if (bins_.size() == 0) return nan;
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(means_.size());
   for (const std::size_t record : records) {
@@ -78,7 +78,7 @@ double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, 
   const double scale = static_cast<double>(records.size()) / sums.sum();
   const double within =
       (variance_.array() * sums.array() * (1.0 - sums.array() / bins_.counts().array())).sum();
-  return scale * scale * (within + noise_covariance(sums, bins_, noise, flight)(0, 0));
+  return scale * scale * (within + noise_covariance(sums, bins_, noise, 0)(0, 0));
 }
 
 NoiseModel BinnedResidual::noise_about_mean() const {

@@ -33,8 +33,8 @@ class BinnedResidual {
                                      std::size_t flight) const;
 
   /// Variance of the sum of the noise over the given records; NaN if there are no bins.
-  double variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,
-                         std::size_t flight) const;
+  /// @param noise with the levels of this flight alone
+  double variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise) const;
 
  private:
   std::vector<std::size_t> outside_{};  ///< used records outside the bins

@@ -92,7 +92,7 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
     if (!std::isnan(residual[i])) used.push_back(i);
   }
   const BinnedResidual binned(residual, samples.time, samples.step);
-  sums.sum_variance = binned.variance_of_sum(used, binned.noise_about_mean(), 0);
+  sums.sum_variance = binned.variance_of_sum(used, binned.noise_about_mean());
   return sums;
 }
 
