@@ -20,12 +20,10 @@ namespace {
 std::string add_spans(const Flight& flight, const std::string& reason, const std::vector<bool>& records,
                       std::size_t max_gap, ProcessSummary& summary) {
   const std::vector<double> time = record_times(flight);
-  const std::vector<Segment> segments = marked_segments(records, max_gap);
-  for (const Segment& segment : segments) {
-    const double last = time[segment.first + segment.count - 1];
-    summary.outside.push_back({reason, time[segment.first], last + flight.time().step});
-  }
-  return times_of(segments, time);
+  const std::vector<Run> runs = marked_runs(records, max_gap);
+  for (const Run& run : runs)
+    summary.outside.push_back({reason, time[run.first], time[run.end - 1] + flight.time().step});
+  return times_of(runs, time);
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
       "{} samples have extended flaps, inferred from the lift, and are used only with --max-flaps 100: {}{}; "
       "flaps are not recorded; the angle of attack is {:.0f} % below its value with flaps "
       "retracted, scatter {:.1f} %",
-      out, times_of(marked_segments(lift->out), samples.time),
+      out, times_of(marked_runs(lift->out), samples.time),
       slow == 0 ? "" : fmt::format("; {} of them are below {:g} m/s", slow, min_airspeed),
       100.0 * lift->deficit, 100.0 * lift->deviation);
   const bool is_considerable = static_cast<double>(out) / static_cast<double>(lift->out.size()) > 0.1;

@@ -12,7 +12,7 @@ using pcor::FlightSamples;
 using pcor::Quantity;
 using pcor::internal::find_flaps_by_lift;
 using pcor::internal::FlapsByLift;
-using pcor::internal::marked_segments;
+using pcor::internal::marked_runs;
 using pcor::internal::times_of;
 using testing::HasSubstr;
 
@@ -67,7 +67,7 @@ TEST(FlapsByLift, LowAngleForTheLiftMeansExtendedFlaps) {
     // Two changes, each to a piece of 20 s.
     EXPECT_LE(wrong, 40U) << seed;
     EXPECT_NEAR(found->deficit, 3.0 / (390.0 * 0.88 / 34.0), 0.05) << "3 deg of those that the lift needs";
-    EXPECT_THAT(times_of(marked_segments(found->out), flight.samples.time), HasSubstr(", 21:31"));
+    EXPECT_THAT(times_of(marked_runs(found->out), flight.samples.time), HasSubstr(", 21:31"));
   }
 }
 
