@@ -17,20 +17,21 @@ bool takes_part(const std::vector<std::vector<double>>& columns, const std::vect
          std::all_of(columns.begin(), columns.end(), [i](const auto& c) { return std::isfinite(c[i]); });
 }
 
-/// End of each flight in a series of consecutive flights: a new flight begins if the time decreases, or
-/// increases by more than an hour.
-std::vector<std::size_t> ends_of_flights(const std::vector<double>& time) {
+/// The flights in a series of consecutive flights: a new flight begins if the time decreases, or increases by
+/// more than an hour.
+std::vector<Segment> flights_of(const std::vector<double>& time) {
   constexpr double max_gap = 3600.0;  // s
-  std::vector<std::size_t> ends;
-  for (std::size_t i = 1; i <= time.size(); ++i) {
-    const bool is_continuous = i < time.size() && time[i] > time[i - 1] && time[i] < time[i - 1] + max_gap;
-    if (!is_continuous) ends.push_back(i);
+  std::vector<Segment> flights;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const bool is_continuous = i > 0 && time[i] > time[i - 1] && time[i] < time[i - 1] + max_gap;
+    if (!is_continuous) flights.push_back({i, 0});
+    ++flights.back().count;
   }
-  return ends;
+  return flights;
 }
 
-std::vector<double> part_of(const std::vector<double>& values, std::size_t first, std::size_t last) {
-  return {values.data() + first, values.data() + last};
+std::vector<double> part_of(const std::vector<double>& values, const Segment& part) {
+  return {values.data() + part.first, values.data() + part.first + part.count};
 }
 
 /// The covariance matrix of the sums (column . noise) over the samples that have a residual, which is what
@@ -38,28 +39,24 @@ std::vector<double> part_of(const std::vector<double>& values, std::size_t first
 Eigen::MatrixXd covariance_of_sums(const std::vector<std::vector<double>>& columns,
                                    const std::vector<double>& residual, const std::vector<double>& time,
                                    double step) {
+  const std::vector<Segment> parts = flights_of(time);
   std::vector<BinnedResidual> flights;
   std::vector<Binning> bins;
   std::vector<Eigen::MatrixXd> columns_of_flights;
   std::vector<Eigen::VectorXd> means;
-  std::vector<std::size_t> begins;
-  std::size_t first = 0;
-  for (const std::size_t last : ends_of_flights(time)) {
-    const BinnedResidual& flight =
-        flights.emplace_back(part_of(residual, first, last), part_of(time, first, last), step);
+  for (const Segment& part : parts) {
+    const BinnedResidual& flight = flights.emplace_back(part_of(residual, part), part_of(time, part), step);
     bins.push_back(flight.bins());
     means.push_back(flight.means());
     Eigen::MatrixXd& binned = columns_of_flights.emplace_back(means.back().size(), columns.size());
     for (std::size_t c = 0; c < columns.size(); ++c)
-      binned.col(as_index(c)) = flight.bins().means(part_of(columns[c], first, last));
-    begins.push_back(first);
-    first = last;
+      binned.col(as_index(c)) = flight.bins().means(part_of(columns[c], part));
   }
   const NoiseModel noise = expected_noise(bins, columns_of_flights, means, 1);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(as_index(columns.size()), as_index(columns.size()));
   for (std::size_t f = 0; f < flights.size(); ++f) {
     std::vector<const double*> here;
-    for (const std::vector<double>& column : columns) here.push_back(column.data() + begins[f]);
+    for (const std::vector<double>& column : columns) here.push_back(column.data() + parts[f].first);
     covariance += flights[f].covariance_of_sums(here, noise, f);
   }
   return covariance;
