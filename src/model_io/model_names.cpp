@@ -14,11 +14,11 @@ std::vector<NamedParameter> named_parameters(const Model& model) {
   return all;
 }
 
-const double* parameter_named(const Model& model, std::string_view name) {
+double parameter_value(const Model& model, std::string_view name) {
   for (const NamedParameter& each : named_parameters(model)) {
-    if (each.name == name) return &model.effects[each.effect].parameters[each.number];
+    if (each.name == name) return model.effects[each.effect].parameters[each.number];
   }
-  return nullptr;
+  return 0.0;
 }
 
 Quantity role_of_variable(const ModelDefinition& file, std::string_view name) {

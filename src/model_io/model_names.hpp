@@ -27,8 +27,9 @@ struct NamedParameter {
 /// All parameters of a model, in the order of the effects.
 std::vector<NamedParameter> named_parameters(const Model& model);
 
-/// Parameter of the model with a name like "static-qp.a2", or nullptr.
-const double* parameter_named(const Model& model, std::string_view name);
+/// Value of the parameter of the model with a name like "static-qp.a2"; zero, its neutral value, for the
+/// coefficient of a sensor without an effect in the model.
+double parameter_value(const Model& model, std::string_view name);
 
 /// Role that a name in a formula means as the name of its variable: the first such role; `Quantity::count`
 /// for the name of a quantity or of another variable.

@@ -381,8 +381,7 @@ class Reader final : TomlReader {
     if (values.size() != names.size())
       fail(entry, "'values' has {} numbers; give {}", values.size(), requested);
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const double* const own = parameter_named(file_.model, names[i]);
-      const double value = own != nullptr ? *own : 0.0;
+      const double value = parameter_value(file_.model, names[i]);
       if (std::abs(value - values[i]) <= 1e-9 * std::abs(value)) continue;
       fail(entry,
            "[covariance] does not match the coefficients: {} = {} in values, {} in its "

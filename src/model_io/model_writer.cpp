@@ -281,15 +281,12 @@ class Writer {
     const Covariance& covariance = file.covariance;
     if (covariance.parameters.empty() && covariance.matrix.empty()) return;
     heading("[covariance]");
-    std::vector<std::string> names;
-    for (const std::string& name : covariance.parameters) names.push_back(text(name));
-    line("parameters", list(names));
-    std::vector<std::string> values;
+    std::vector<std::string> names, values;
     for (const std::string& name : covariance.parameters) {
-      const double* const value =
-          parameter_named(file.model, name);  // null for a sensor: at its neutral value
-      values.push_back(number(value != nullptr ? *value : 0.0, name));
+      names.push_back(text(name));
+      values.push_back(number(parameter_value(file.model, name), name));
     }
+    line("parameters", list(names));
     line("values", list(values));
     std::string rows;
     for (const std::vector<double>& row : covariance.matrix) {
