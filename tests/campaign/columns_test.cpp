@@ -273,6 +273,19 @@ TEST(Columns, FixedCoefficientsHaveNoColumn) {
   EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
 }
 
+// Such columns were zero, and the effect on the other system was no alias of that on this one.
+TEST(Columns, EffectsAddToTheMinimumOfTheLaw) {
+  const Made without;
+  Made made;
+  made.model.model.policy.minimum = 5.0;  // hPa, more than the law gives
+  made.set = find_candidates(made.model, {}, {}, {made.reference});
+  const FlightColumns columns = find_columns(made.samples, made.model, made.set, 0, {}, 1.0);
+  EXPECT_EQ(columns.base.cwiseAbs().maxCoeff(), 0.0F);
+  const Eigen::MatrixXf expected = columns_of(without.columns, without.set, "static-alpha-quad");
+  // The air is that of another delta-p: 5 hPa of 70 hPa.
+  EXPECT_TRUE(columns_of(columns, made.set, "static-alpha-quad").isApprox(expected, 0.1F));
+}
+
 // Otherwise laser noise would be explained by columns that contain it.
 TEST(Columns, ExcludeLaserNoise) {
   const Made quiet(0.0);

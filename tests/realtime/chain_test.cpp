@@ -1269,6 +1269,21 @@ TEST(Additions, EqualAConstantEffectAtTheSameLocation) {
   }
 }
 
+TEST(Additions, AddToTheMinimumOfThePolicy) {
+  Model model = Truth().model();
+  model.policy.minimum = 7.0;  // hPa, more than the law gives
+  model.additions = {EffectLocation::static_defect};
+  const Recorded recorded = full_record();
+  const Chain chain = build(model, recorded);
+  std::vector<double> parameters = chain.parameters();
+  parameters.back() = 0.25;
+  Sample sample;
+  for (const auto& [quantity, value] : recorded) sample.state[quantity] = value;
+  chain.measure(sample.state, parameters.data(), sample.flags);
+  EXPECT_EQ(chain.static_defect(sample.state, parameters.data(), sample.flags), 7.25);
+  EXPECT_TRUE(sample.flags.has(Quality::minimum_applied));
+}
+
 TEST(Additions, UnusedLocationsNeedAndChangeNoData) {
   // A model whose angle of attack is recorded reads no radome; one without a laser has no beam.
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);

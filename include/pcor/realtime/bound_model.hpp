@@ -149,6 +149,16 @@ class BoundModel {
     return acts(location) ? sum_of_terms<R>(location, state, parameters) : R(0.0);
   }
 
+  // Additional amount at a location.
+  template <class R, class P>
+  R amount_added_at(EffectLocation location, const P* parameters) const {
+    R total(0.0);
+    for (std::size_t i = begin_of(location); i < begin_of(location, 1); ++i) {
+      if (terms_[i].effect == Term::is_addition) total = total + R(parameters[terms_[i].first_parameter]);
+    }
+    return total;
+  }
+
   LamsMounting lams_;
   RecoveryFactor recovery_;
   RadomeCalibration attack_radome_;

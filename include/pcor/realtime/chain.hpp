@@ -121,9 +121,10 @@ class Chain : public BoundModel {
     }
     if (watches_flaps_) flags.set(state[Quantity::flaps] > S(flaps_in), Quality::outside_domain);
     if (has_minimum()) {
-      const auto below = defect < R(policy_.minimum);
+      const R added = amount_added_at<R>(EffectLocation::static_defect, parameters);
+      const auto below = defect - added < R(policy_.minimum);
       flags.set(below, Quality::minimum_applied);
-      defect = select(below, R(policy_.minimum), defect);
+      defect = select(below, R(policy_.minimum) + added, defect);
     }
     if (is_tapered) {
       const auto slow = q < S(policy_.taper_below);
