@@ -12,12 +12,15 @@
 
 #include "campaign/reference_id.hpp"
 #include "diagnose/finding_page.hpp"
+#include "diagnose/rms.hpp"
 #include "report/residual_pictures.hpp"
 #include "report/shown_flights.hpp"
 
 namespace pcor::internal::report {
 namespace {
 
+constexpr const char* structure_caption =
+    "A slope or curvature larger than the error bars indicates a missing effect or slow drift.";
 const std::string mach = "mach";
 const std::string pressure = "static_pressure";
 
@@ -108,7 +111,7 @@ DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
     for (std::size_t i = 0; i < flight.before.size(); ++i) {
       if (std::isfinite(flight.before[i])) records.push_back(i);
     }
-    samples_.add_flight(flight.samples, std::move(records));
+    add_flight(flight.samples, std::move(records));
   }
   add_variables(flights);
 }
@@ -125,33 +128,29 @@ void DiagnosisPanels::add_finding_columns(const Flights& flights, std::size_t fi
   add_column(numbered("added", number), "added by " + id, "hPa", flights, one_of(&FlightDiagnosis::added));
 }
 
-std::string DiagnosisPanels::effect_caption(const std::string& before_it, const std::string& after_it) const {
+std::string DiagnosisPanels::binned_caption(const std::vector<std::string>& y) const {
   constexpr double notable = 0.98;
-  const ReportColumn* const before = column_named(samples_.report().columns, before_it);
-  const ReportColumn* const after = column_named(samples_.report().columns, after_it);
+  const ReportColumn* const before = column_named(report().columns, y.front());
+  const ReportColumn* const after = column_named(report().columns, y.back());
   if (before == nullptr || after == nullptr || before == after) return structure_caption;
-  double squares_before = 0.0;
-  double squares_after = 0.0;
-  double count = 0.0;
+  SquareSum sum_before;
+  SquareSum sum_after;
   for (std::size_t i = 0; i < before->values.size(); ++i) {
-    const double a = before->values[i];
-    const double b = after->values[i];
-    if (!std::isfinite(a) || !std::isfinite(b)) continue;
-    squares_before += a * a;
-    squares_after += b * b;
-    count += 1.0;
+    if (!std::isfinite(before->values[i]) || !std::isfinite(after->values[i])) continue;
+    sum_before.add(before->values[i]);
+    sum_after.add(after->values[i]);
   }
-  if (!(count > 0.0)) return structure_caption;
-  return fmt::format("Rms {} hPa before and {} hPa after, with all findings. {}",
-                     hpa(std::sqrt(squares_before / count)), hpa(std::sqrt(squares_after / count)),
-                     squares_after < notable * notable * squares_before
+  if (!(sum_before.count > 0.0)) return structure_caption;
+  return fmt::format("Rms {} hPa before and {} hPa after, with all findings. {}", hpa(sum_before.rms()),
+                     hpa(sum_after.rms()),
+                     sum_after.squares < notable * notable * sum_before.squares
                          ? "They should remove slopes and curvatures larger than the error bars."
                          : "This picture does not show the evidence; see the pictures of the evidence.");
 }
 
-void DiagnosisPanels::add_binned(std::string title, std::string caption, std::vector<std::string> y,
+void DiagnosisPanels::add_binned(std::string title, const std::vector<std::string>& y,
                                  const std::vector<std::string>& first) {
-  BinnedPanel panel{std::move(title), std::move(caption), present(report(), std::move(y)), {}};
+  BinnedPanel panel{std::move(title), binned_caption(y), present(report(), y), {}};
   panel.x_choices = choices(panel.columns, first);
   if (panel.x_choices.empty()) return;
   panel.axis = "residual";
@@ -165,7 +164,7 @@ std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>
   const auto offer = [&](const std::string& x) {
     const bool known = std::find(all.begin(), all.end(), x) != all.end();
     const bool shown = std::any_of(y.begin(), y.end(), [&](const std::string& name) {
-      return meet(samples_.report().columns, {x, name});
+      return meet(report().columns, {x, name});
     });
     if (!known && shown) all.push_back(x);
   };
@@ -180,7 +179,7 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   if (what_if.panel.effects.empty() || !meet(report().columns, {residual})) return;
   WhatIfPanel panel = what_if.panel;
   for (std::size_t c = 0; c < panel.coefficients.size(); ++c) {
-    panel.coefficients[c].column = samples_.joined(
+    panel.coefficients[c].column = joined(
         what_if.flights, [c](const WhatIfFlight& flight) -> const auto& { return flight.columns[c]; });
   }
   panel.title = "What if";
@@ -226,9 +225,9 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
   add_variable("attack", "angle of attack", "deg", flights, &F::attack);
   add_variable("sideslip", "sideslip", "deg", flights, &F::sideslip);
   for (const char* const name : {"vertical_speed", "true_airspeed", "roll", "altitude"}) {
-    if (samples_.add_motion(name)) variables_.emplace_back(name);
+    if (add_motion(name)) variables_.emplace_back(name);
   }
-  samples_.add_position();
+  add_position();
   add_variable("time", "time since the first record", "h", flights, [](const F& f) {
     Series hours;
     for (const double time : f.samples->time) hours.push_back((time - f.samples->time.front()) / 3600.0);
@@ -261,7 +260,7 @@ void DiagnosisPanels::add_info(const Diagnosis& diagnosis, const ModelDefinition
   std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
   if (!text.empty()) report().summary.push_back(std::move(text));
   if (!excluded.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(excluded, "; ")));
-  samples_.add_flights_to_info();
+  add_flights_to_info();
   info.emplace_back("Program", "pcor " PCOR_VERSION);
   for (const Note& note : diagnosis.notes) info.emplace_back(label_of(note), note.text);
 }
@@ -290,8 +289,7 @@ void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::str
   if (unexplained.variables.empty()) return;
   const std::string& variable = unexplained.variables.front().name;
   if (meet(report().columns, {variable_column(variable), left}))
-    add_binned("Remaining residual against " + variable, structure_caption, {left},
-               {variable_column(variable)});
+    add_binned("Remaining residual against " + variable, {left}, {variable_column(variable)});
 }
 
 void DiagnosisPanels::add_traced(const Diagnosis& diagnosis) {
@@ -301,17 +299,12 @@ void DiagnosisPanels::add_traced(const Diagnosis& diagnosis) {
                &FlightDiagnosis::traced);
 }
 
-void DiagnosisPanels::add_residual_in_time(const Diagnosis& diagnosis,
-                                           const std::vector<std::string>& residuals) {
+void DiagnosisPanels::add_residuals(const Diagnosis& diagnosis, const std::vector<std::string>& residuals) {
   add_if_present(report(),
                  TimePanel{"Residual in time",
                            fmt::format("Residual: reference minus model, with {}; regimes are shaded.",
                                        refitted_text(diagnosis)),
                            residuals, "residual"});
-}
-
-void DiagnosisPanels::add_residual_by_regime(const Diagnosis& diagnosis,
-                                             const std::vector<std::string>& residuals) {
   if (report().time.empty()) return;
   add_strip(report());
   add(RegimeTable{

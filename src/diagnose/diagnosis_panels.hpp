@@ -18,9 +18,6 @@ using Flights = std::vector<FlightDiagnosis>;
 using Series = std::vector<double>;
 using Info = std::vector<std::pair<std::string, std::string>>;
 
-inline constexpr const char* structure_caption =
-    "A slope or curvature larger than the error bars indicates a missing effect or slow drift.";
-
 /// Name of one of several columns, "residual1".
 std::string numbered(const char* name, std::size_t number);
 
@@ -36,22 +33,13 @@ std::string cell(double value, int decimals);
 
 /// Columns and panels of a report about diagnoses of the same flights. Its samples are those with a residual
 /// in the first diagnosis.
-class DiagnosisPanels {
+class DiagnosisPanels : public FlightReport {
  public:
   explicit DiagnosisPanels(const Flights& flights);
-
-  Report& report() { return samples_.report(); }
 
   template <class Panel>
   void add(Panel panel) {
     report().items.emplace_back(std::move(panel));
-  }
-
-  /// Adds the column as `FlightReport::add_column` does.
-  template <class Flight, class Of>
-  bool add_column(const std::string& name, const std::string& title, const std::string& unit,
-                  const std::vector<Flight>& flights, const Of& series) {
-    return samples_.add_column(name, title, unit, flights, series);
   }
 
   /// Adds the columns of one finding, its evidence and its contribution, with the names of
@@ -62,13 +50,10 @@ class DiagnosisPanels {
   /// Adds the variable with the most unexplained structure, if any, to the axes of residual plots.
   void add_traced(const Diagnosis& diagnosis);
 
-  /// Caption of the residual before and after an effect is added, columns of the report, with both rms
-  /// values.
-  std::string effect_caption(const std::string& before_it, const std::string& after_it) const;
-
   /// Residuals against the variables; the existing variables of `first` are shown first. Error bars are by
   /// the noise of the last residual.
-  void add_binned(std::string title, std::string caption, std::vector<std::string> y,
+  /// @param y one residual, or the residuals before and after effects are added
+  void add_binned(std::string title, const std::vector<std::string>& y,
                   const std::vector<std::string>& first);
 
   /// Interactive effects; empty if there is no effect.
@@ -86,10 +71,8 @@ class DiagnosisPanels {
   /// @param numbers further text after the model and the reference
   void add_info(const Diagnosis& diagnosis, const ModelDefinition& model, const Info& numbers);
 
-  void add_residual_in_time(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
-
-  /// Flight profile with its regimes, and the residuals in each regime.
-  void add_residual_by_regime(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
+  /// Residuals in time, flight profile with its regimes, and residuals in each regime.
+  void add_residuals(const Diagnosis& diagnosis, const std::vector<std::string>& residuals);
 
   /// Last panels of a report: periods, locations and distribution of the residuals, the unexplained part of
   /// the last one, and the tables of effects that were not found.
@@ -104,6 +87,8 @@ class DiagnosisPanels {
       variables_.push_back(name);
   }
   void add_variables(const Flights& flights);
+  /// Caption of residuals against a variable; before and after an effect is added, with both rms values.
+  std::string binned_caption(const std::vector<std::string>& y) const;
   /// Variables that have values in samples of one of the columns, `first` first.
   std::vector<std::string> choices(const std::vector<std::string>& y,
                                    const std::vector<std::string>& first) const;
@@ -111,7 +96,6 @@ class DiagnosisPanels {
   /// @param left column of the remaining residual
   void add_unexplained(const Diagnosis& diagnosis, const std::string& left);
 
-  FlightReport samples_;
   std::vector<std::string> variables_;
 };
 

@@ -158,11 +158,10 @@ ReportTable evidence_table(const std::vector<Finding>& findings) {
 /// Residual before and after against the inputs of a finding.
 void add_against_inputs(DiagnosisPanels& panels, const Diagnosis& diagnosis,
                         const std::vector<std::string>& residuals, std::size_t number) {
-  const ModelEffect& effect = diagnosis.findings[number].effect;
-  std::vector<std::string> inputs = inputs_of(effect);
+  const Finding& finding = diagnosis.findings[number];
+  std::vector<std::string> inputs = inputs_of(finding.effect);
   inputs.push_back(numbered("added", number));
-  panels.add_binned("Residual before and after, against the inputs of " + diagnosis.findings[number].id(),
-                    panels.effect_caption(residuals.front(), residuals.back()), residuals, inputs);
+  panels.add_binned("Residual before and after, against the inputs of " + finding.id(), residuals, inputs);
 }
 
 /// Pictures of the findings of a diagnosis, and one page per finding.
@@ -290,12 +289,11 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
                        found ? "noise with all findings" : "noise");
   }
   if (found) add_against_inputs(panels, diagnosis, residuals, 0);
-  panels.add_residual_in_time(diagnosis, residuals);
-  panels.add_residual_by_regime(diagnosis, residuals);
+  panels.add_residuals(diagnosis, residuals);
   if (found) {
     add_findings(panels, diagnosis, residuals);
   } else {
-    panels.add_binned("Residual against a variable", structure_caption, residuals, {});
+    panels.add_binned("Residual against a variable", residuals, {});
     panels.add_plane("Residual over Mach number and pressure", "One colour over a region is a bias there.",
                      "before");
   }

@@ -211,10 +211,8 @@ void add_step(DiagnosisPanels& panels, const Improvement& improvement, std::size
         fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as the only added effect",
                     estimates_text(fitted)));
   panels.add(std::move(page));
-  const std::string without = numbered("step", index - 1);
-  const std::string with = numbered("step", index);
   panels.add_binned("Residual without and with " + step.added + ", against its inputs",
-                    panels.effect_caption(without, with), {without, with}, inputs);
+                    {numbered("step", index - 1), numbered("step", index)}, inputs);
   panels.add_plane("Evidence for " + step.added + ", over Mach number and pressure",
                    "Orange supports the effect, blue contradicts it.", numbered("evidence", index));
 }
@@ -277,8 +275,7 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
                                    "",
                                    averaging_time});
   if (residuals.size() > 2) residuals = {residuals.front(), residuals.back()};
-  panels.add_residual_in_time(top, residuals);
-  panels.add_residual_by_regime(top, residuals);
+  panels.add_residuals(top, residuals);
   for (std::size_t i = 1; i < steps.size(); ++i) add_step(panels, improvement, i);
   panels.add_last_panels(top, residuals);
   return std::move(report);
