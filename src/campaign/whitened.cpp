@@ -132,8 +132,12 @@ PartialSums& PartialSums::operator+=(const PartialSums& other) {
   return *this;
 }
 
-Eigen::VectorXd WhitenedSystem::left(std::size_t flight, const Eigen::VectorXd& coefficients) const {
-  return rows[flight].col(columns()) - rows[flight].leftCols(columns()) * coefficients;
+std::vector<Eigen::VectorXd> WhitenedSystem::left(const Eigen::VectorXd& coefficients) const {
+  std::vector<Eigen::VectorXd> result(rows.size());
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    if (share.is_local(f)) result[f] = rows[f].col(columns()) - rows[f].leftCols(columns()) * coefficients;
+  }
+  return result;
 }
 
 Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(std::size_t)>& of_rows) const {

@@ -88,8 +88,8 @@ struct WhitenedSystem {
     return bin[flight].empty() ? row : bin[flight][static_cast<std::size_t>(row)];
   }
 
-  /// Whitened residual of a flight of this process after the columns with these coefficients.
-  Eigen::VectorXd left(std::size_t flight, const Eigen::VectorXd& coefficients) const;
+  /// Whitened residuals of each flight of this process after the columns with these coefficients.
+  std::vector<Eigen::VectorXd> left(const Eigen::VectorXd& coefficients) const;
 
   /// Sums over the minutes of all flights of a value of each row. @param of_rows gives these values for a
   /// flight of this process

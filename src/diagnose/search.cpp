@@ -348,11 +348,7 @@ double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen,
 std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
   coefficients(indices_of(chosen, groups_, base_)) = fit(chosen).estimate;
-  std::vector<Eigen::VectorXd> result(scores_->rows.size());
-  for (std::size_t f = 0; f < result.size(); ++f) {
-    if (scores_->share.is_local(f)) result[f] = scores_->left(f, coefficients);
-  }
-  return result;
+  return scores_->left(coefficients);
 }
 
 bool Search::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {

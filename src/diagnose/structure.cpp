@@ -70,13 +70,8 @@ double chance_among(double value, const Eigen::VectorXd& others) {
 /// Whitened residuals of each local flight after least squares of all columns.
 std::vector<Eigen::VectorXd> left_of(const WhitenedSystem& scores) {
   const Eigen::Index width = scores.columns();
-  const Eigen::VectorXd solution = pseudo_solution(scores.information.topLeftCorner(width, width),
-                                                   scores.information.col(width).head(width));
-  std::vector<Eigen::VectorXd> left(scores.rows.size());
-  for (std::size_t f = 0; f < left.size(); ++f) {
-    if (scores.share.is_local(f)) left[f] = scores.left(f, solution);
-  }
-  return left;
+  return scores.left(pseudo_solution(scores.information.topLeftCorner(width, width),
+                                     scores.information.col(width).head(width)));
 }
 
 }  // namespace
@@ -132,10 +127,10 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
   return flights.determinant + static_cast<double>(rows_) * std::log(left);
 }
 
-std::optional<VariableValues> StructureTest::values_of(const std::vector<const double*>& values) const {
+std::optional<VariableValues> StructureTest::values_of(const ValuesOfFlights& values) const {
   VariableValues found(share_, [&](std::size_t f) {
     std::vector<double> of_flight;
-    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
+    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back((*values[f])[record]);
     return of_flight;
   });
   const auto missing = static_cast<double>(found.missing());
@@ -143,7 +138,7 @@ std::optional<VariableValues> StructureTest::values_of(const std::vector<const d
   return found;
 }
 
-bool StructureTest::add(const std::string& name, const std::vector<const double*>& values, double turn) {
+bool StructureTest::add(const std::string& name, const ValuesOfFlights& values, double turn) {
   const std::optional<VariableValues> known = values_of(values);
   if (!known) return false;
   if (turn > 0.0) return add(name, values, Smooth::periodic(*known, turn));
@@ -151,7 +146,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   return add(name, values, Smooth::with_knots_at_values(*known, maximum));
 }
 
-bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
+bool StructureTest::add_fine(const std::string& name, const ValuesOfFlights& values) {
   const std::size_t maximum = std::min(rows_ / bins_per_column, fine_columns);
   if (maximum <= max_columns) return false;
   const std::optional<VariableValues> known = values_of(values);
@@ -159,7 +154,7 @@ bool StructureTest::add_fine(const std::string& name, const std::vector<const do
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
-                                                       const std::vector<const double*>& values) const {
+                                                       const ValuesOfFlights& values) const {
   const Eigen::Index count = as_index(smooth.columns());
   std::vector<double> functions(smooth.columns());
   std::vector<Eigen::MatrixXd> columns;
@@ -169,7 +164,7 @@ std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
     Eigen::VectorXd counts = Eigen::VectorXd::Zero(as_index(bins.size()));
     double last = smooth.centre();
     for (std::size_t k = 0; k < bins.records().size(); ++k) {
-      const double value = values[f][bins.records()[k]];
+      const double value = (*values[f])[bins.records()[k]];
       if (std::isfinite(value)) last = value;
       smooth.evaluate(last, functions.data());
       sums.row(bins.bins()[k]) += Eigen::Map<const Eigen::RowVectorXd>(functions.data(), count);
@@ -229,8 +224,7 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   return taken;
 }
 
-bool StructureTest::add(const std::string& name, const std::vector<const double*>& values,
-                        const Smooth& smooth) {
+bool StructureTest::add(const std::string& name, const ValuesOfFlights& values, const Smooth& smooth) {
   if (smooth.columns() == 0) return false;
   const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, values);
   const auto sums =
@@ -321,7 +315,7 @@ bool ChangeSlope::agrees_with(const Structure& structure) const {
 }
 
 ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
-                             const std::vector<const double*>& values) {
+                             const ValuesOfFlights& values) {
   constexpr std::size_t window = 300;
   constexpr std::size_t fewest = 60;
   using Parts = std::vector<std::array<double, 2>>;  // correlation and slope of each part
@@ -335,7 +329,7 @@ ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std
       std::size_t count = 0;
       for (std::size_t i = first; i < std::min(first + window, residual.size()); ++i) {
         const double change = residual[i] - residual[i - 1];
-        const double other = values[f][i] - values[f][i - 1];
+        const double other = (*values[f])[i] - (*values[f])[i - 1];
         if (!std::isfinite(change) || !std::isfinite(other)) continue;
         rr += change * change;
         vv += other * other;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "parallel/flight_partition.hpp"
 
 namespace pcor::internal {
+
+/// Values of a variable on each flight, one for each record; of local flights only.
+using ValuesOfFlights = std::vector<std::shared_ptr<const std::vector<double>>>;
 
 /// Part of a model's residuals explained by functions of a variable, of which it has the name.
 struct Structure : EmpiricalPredictor {
@@ -58,10 +62,10 @@ class StructureTest {
   /// Tries functions of a variable: its values of each flight, one for each record. Returns false and skips a
   /// variable that is constant or has no value in more than a tenth of the used records.
   /// @param turn full turn of an angle in its unit; 0 for other variables
-  bool add(const std::string& name, const std::vector<const double*>& values, double turn = 0.0);
+  bool add(const std::string& name, const ValuesOfFlights& values, double turn = 0.0);
 
   /// Tries functions that bend many times over the range of the variable.
-  bool add_fine(const std::string& name, const std::vector<const double*>& values);
+  bool add_fine(const std::string& name, const ValuesOfFlights& values);
 
   const std::vector<Structure>& structures() const { return structures_; }
 
@@ -100,10 +104,9 @@ class StructureTest {
   };
 
   /// Values of all records used; nothing if too many are missing.
-  std::optional<VariableValues> values_of(const std::vector<const double*>& values) const;
-  bool add(const std::string& name, const std::vector<const double*>& values, const Smooth& smooth);
-  std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
-                                          const std::vector<const double*>& values) const;
+  std::optional<VariableValues> values_of(const ValuesOfFlights& values) const;
+  bool add(const std::string& name, const ValuesOfFlights& values, const Smooth& smooth);
+  std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth, const ValuesOfFlights& values) const;
   /// Products of the whitened functions of a flight with themselves, the model, the remaining residuals and
   /// the draws, in adjacent columns for each part of the drift.
   Eigen::MatrixXd products(std::size_t flight, const Eigen::MatrixXd& columns) const;
@@ -142,6 +145,6 @@ struct ChangeSlope {
 
 /// @param residuals and @param values of local flights; missing values are ignored
 ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
-                             const std::vector<const double*>& values);
+                             const ValuesOfFlights& values);
 
 }  // namespace pcor::internal

@@ -170,12 +170,6 @@ std::set<std::string> computed_from(const Flight& flight, const std::set<std::st
   return computed;
 }
 
-std::vector<const double*> TestedVariable::pointers() const {
-  std::vector<const double*> result;
-  for (const Values& each : values) result.push_back(each->data());
-  return result;
-}
-
 std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& flights) {
   std::vector<TestedVariable> result;
   for (const auto& [quantity, column] : flights.front().quantities) {

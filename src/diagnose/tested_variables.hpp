@@ -27,8 +27,6 @@ struct TestedVariable {
   std::string sampling{};  ///< description of the resampling to one value per record; empty if not resampled
   std::vector<std::shared_ptr<const std::vector<double>>> values{};
 
-  std::vector<const double*> pointers() const;
-
   /// Description without values, as the first file gives it to all members of a team.
   template <class Archive>
   void serialize(Archive& archive) {

@@ -137,7 +137,7 @@ void sort_correlated(const Analysis& analysis,
   if (correlated.empty()) return;
   StructureTest test = test_beside(analysis, analysis.result().chosen, seed);
   for (auto& [variable, slope] : correlated) {
-    if (test.add(variable.name, variable.pointers(), variable.turn) &&
+    if (test.add(variable.name, variable.values, variable.turn) &&
         slope.agrees_with(test.structures().back())) {
       variables.push_back(std::move(variable));
     } else {
@@ -165,7 +165,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
       found.computed.push_back(variable.name);
       continue;
     }
-    const ChangeSlope slope = slope_of_changes(analysis.share(), after, variable.pointers());
+    const ChangeSlope slope = slope_of_changes(analysis.share(), after, variable.values);
     if (slope.is_correlated()) {
       correlated.emplace_back(std::move(variable), slope);
     } else {
@@ -196,8 +196,8 @@ struct Tested {
 
   void add(const std::vector<TestedVariable>& all) {
     for (const TestedVariable& variable : all) {
-      if (test.add(variable.name, variable.pointers(), variable.turn)) variables.push_back(&variable);
-      if (variable.fine && test.add_fine(variable.name, variable.pointers())) variables.push_back(&variable);
+      if (test.add(variable.name, variable.values, variable.turn)) variables.push_back(&variable);
+      if (variable.fine && test.add_fine(variable.name, variable.values)) variables.push_back(&variable);
     }
   }
 

@@ -58,6 +58,10 @@ Eigen::VectorXd as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+ValuesOfFlights one_flight(const std::vector<double>& values) {
+  return {std::make_shared<const std::vector<double>>(values)};
+}
+
 /// Residuals with correlated noise, a base of a constant, and random-walk variables.
 struct Flight {
   std::vector<Binning> bins;
@@ -91,7 +95,7 @@ struct Flight {
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
     StructureTest result(FlightPartition(1), bins, columns, residuals, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
-      result.add("v" + std::to_string(k), {variables[k].data()});
+      result.add("v" + std::to_string(k), one_flight(variables[k]));
     return result;
   }
 };
@@ -360,7 +364,7 @@ TEST(StructureTest, FindsAnAngle) {
     flight.residuals[0][i] +=
         0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
   StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
-  ASSERT_TRUE(test.add("heading", {flight.variables[2].data()}, 360.0));
+  ASSERT_TRUE(test.add("heading", one_flight(flight.variables[2]), 360.0));
   EXPECT_GT(test.structures()[0].gain, 50.0);
   EXPECT_EQ(test.structures()[0].freedom, 4.0);
   EXPECT_EQ(test.structures()[0].slope, 0.0);
@@ -380,18 +384,18 @@ TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
   StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
-  EXPECT_FALSE(test.add("constant", {constant.data()}));
+  EXPECT_FALSE(test.add("constant", one_flight(constant)));
   std::vector<double> gappy = flight.variables[0];
   for (std::size_t i = 100; i < 120; ++i) gappy[i] = missing;
-  EXPECT_TRUE(test.add("gappy", {gappy.data()}));
+  EXPECT_TRUE(test.add("gappy", one_flight(gappy)));
   for (std::size_t i = 120; i < 150; ++i) gappy[i] = missing;
-  EXPECT_FALSE(test.add("too gappy", {gappy.data()}));
+  EXPECT_FALSE(test.add("too gappy", one_flight(gappy)));
   ASSERT_EQ(test.structures().size(), 1U);
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
 ChangeSlope changes(const std::vector<double>& residual, const std::vector<double>& variable) {
-  return slope_of_changes(FlightPartition(1), {residual}, {variable.data()});
+  return slope_of_changes(FlightPartition(1), {residual}, one_flight(variable));
 }
 
 TEST(ChangeSlope, EqualsTheSlopeOfACause) {
