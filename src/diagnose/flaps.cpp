@@ -12,7 +12,6 @@
 #include "diagnose/findings.hpp"
 #include "diagnose/separation.hpp"
 #include "numerics/missing.hpp"
-#include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
 
 namespace pcor::internal {
@@ -77,29 +76,18 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
   const auto reads = [&flights](const Candidate& candidate) {
     return reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
   };
-  std::vector<std::size_t> requested;
-  for (std::size_t c = 0; c < set.candidates.size(); ++c) {
-    if (reads(set.candidates[c]) || looks_like_flaps(set.candidates[c].effect)) requested.push_back(c);
-  }
-  const auto first_of = [&set](std::size_t c) { return as_index(set.first_column(c)); };
-  const auto count_of = [&set](std::size_t c) { return as_index(set.candidates[c].tested.size()); };
-  const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
-    std::vector<Testability> of_flight(requested.size());
-    if (flights[f].reference != 0) return of_flight;
-    const std::vector<double> given = all_given(flights[f]);
-    for (std::size_t k = 0; k < requested.size(); ++k)
-      of_flight[k] = testability_of(flights[f], given, first_of(requested[k]), count_of(requested[k]));
-    return of_flight;
+  const std::vector<ColumnGroup> groups = groups_of(set, set.candidates);
+  const std::vector<std::string> troubles = troubles_of(columns, groups, [](const FlightColumns& flight) {
+    return flight.reference == 0 ? all_given(flight) : std::vector<double>();
   });
   std::vector<Eigen::Index> kept;
-  for (std::size_t k = 0; k < requested.size(); ++k) {
-    const auto misses = [k](const std::vector<Testability>& of_flight) { return of_flight[k].missing > 0; };
-    const auto varies = [k](const std::vector<Testability>& of_flight) { return of_flight[k].varies; };
-    if (std::any_of(found.begin(), found.end(), misses) || std::none_of(found.begin(), found.end(), varies))
-      continue;
-    const Candidate& candidate = flaps.candidates.emplace_back(set.candidates[requested[k]]);
-    for (Eigen::Index c = 0; c < count_of(requested[k]); ++c) kept.push_back(first_of(requested[k]) + c);
-    flaps.reads_flaps.push_back(reads(candidate));
+  for (std::size_t c = 0; c < groups.size(); ++c) {
+    const Candidate& candidate = set.candidates[c];
+    const bool reads_them = reads(candidate);
+    if (!troubles[c].empty() || !(reads_them || looks_like_flaps(candidate.effect))) continue;
+    flaps.candidates.push_back(candidate);
+    flaps.reads_flaps.push_back(reads_them);
+    for (const Eigen::Index column : indices_of(groups[c], 0)) kept.push_back(column);
   }
   if (std::count(flaps.reads_flaps.begin(), flaps.reads_flaps.end(), true) == 0) return {};
   for (const FlightColumns& flight : flights) flaps.columns.emplace_back(flight.candidates(Eigen::all, kept));

@@ -19,6 +19,32 @@
 namespace pcor::internal {
 namespace {
 
+/// Testability of a candidate on one flight.
+struct Testability {
+  std::size_t samples = 0;  // used samples
+  std::size_t missing = 0;  // used samples without a value of some column
+  bool varies = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, missing, varies);
+  }
+};
+
+/// @param given has a value if a sample is used
+Testability testability_of(const FlightColumns& flight, const std::vector<double>& given,
+                           const ColumnGroup& group) {
+  Testability found;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (std::isnan(given[i])) continue;
+    const auto values = flight.candidates.row(as_index(i)).segment(group.first, group.count);
+    ++found.samples;
+    found.missing += values.allFinite() ? 0 : 1;
+    found.varies = found.varies || values.cwiseAbs().maxCoeff() > 0.0F;
+  }
+  return found;
+}
+
 /// Reason why a candidate cannot be tested on these columns; empty if it can.
 /// @param found result of each flight for each candidate
 std::string trouble_of(const std::vector<FlightColumns>& flights,
@@ -39,19 +65,6 @@ std::string trouble_of(const std::vector<FlightColumns>& flights,
 }
 
 }  // namespace
-
-Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
-                           Eigen::Index count) {
-  Testability found;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (std::isnan(given[i])) continue;
-    const auto values = flight.candidates.row(as_index(i)).segment(first, count);
-    ++found.samples;
-    found.missing += values.allFinite() ? 0 : 1;
-    found.varies = found.varies || values.cwiseAbs().maxCoeff() > 0.0F;
-  }
-  return found;
-}
 
 std::vector<double> sum_of_columns(const FlightColumns& flight, const Eigen::VectorXd& coefficients) {
   const Eigen::Index base = flight.base.cols();
@@ -146,29 +159,35 @@ void leave_out_empty(TeamColumns& columns) {
   columns = {columns.share.of_entries(left), std::move(flights)};
 }
 
-void drop_untestable(CandidateSet& set, TeamColumns& columns) {
-  const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t number) {
-    const FlightColumns& flight = columns.flights[number];
+std::vector<std::string> troubles_of(
+    const TeamColumns& columns, const std::vector<ColumnGroup>& groups,
+    const std::function<std::vector<double>(const FlightColumns& flight)>& given_of) {
+  const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
+    const FlightColumns& flight = columns.flights[f];
+    const std::vector<double> given = given_of(flight);
     std::vector<Testability> of_each;
-    for (std::size_t c = 0; c < set.candidates.size(); ++c)
-      of_each.push_back(testability_of(flight, flight.given, as_index(set.first_column(c)),
-                                       as_index(set.candidates[c].tested.size())));
+    for (const ColumnGroup& group : groups) of_each.push_back(testability_of(flight, given, group));
     return of_each;
   });
+  std::vector<std::string> troubles;
+  for (std::size_t c = 0; c < groups.size(); ++c) troubles.push_back(trouble_of(columns.flights, found, c));
+  return troubles;
+}
+
+void drop_untestable(CandidateSet& set, TeamColumns& columns) {
+  const std::vector<ColumnGroup> groups = groups_of(set, set.candidates);
+  std::vector<std::string> troubles =
+      troubles_of(columns, groups, [](const FlightColumns& flight) { return flight.given; });
   std::vector<Eigen::Index> kept;
   std::vector<Candidate> candidates;
-  Eigen::Index first = 0;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     Candidate& candidate = set.candidates[c];
-    const Eigen::Index count = as_index(candidate.tested.size());
-    std::string trouble = trouble_of(columns.flights, found, c);
-    if (trouble.empty()) {
-      for (Eigen::Index k = 0; k < count; ++k) kept.push_back(first + k);
+    if (troubles[c].empty()) {
+      for (const Eigen::Index column : indices_of(groups[c], 0)) kept.push_back(column);
       candidates.push_back(std::move(candidate));
     } else if (!candidate.is_variant) {
-      set.not_testable.push_back({candidate.id, candidate.title, std::move(trouble)});
+      set.not_testable.push_back({candidate.id, candidate.title, std::move(troubles[c])});
     }
-    first += count;
   }
   set.candidates = std::move(candidates);
   for (FlightColumns& flight : columns.flights) flight.keep_candidates(kept);

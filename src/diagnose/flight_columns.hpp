@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include <pcor/base/note.hpp>
@@ -14,22 +15,6 @@ namespace pcor::internal {
 
 /// Minimum number of samples.
 inline constexpr std::size_t min_samples = 300;
-
-/// Testability of a candidate on one flight.
-struct Testability {
-  std::size_t samples = 0;  ///< used samples
-  std::size_t missing = 0;  ///< used samples without a value of some column
-  bool varies = false;
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(samples, missing, varies);
-  }
-};
-
-/// @param given has a value if a sample is used @param first column of the candidate
-Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
-                           Eigen::Index count);
 
 /// Sum of the columns of base and candidates times their coefficients, for each record of a local flight,
 /// hPa. NaN where a column with a coefficient other than zero has no value.
@@ -64,6 +49,12 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
 
 /// Removes flights without a residual, or with too few samples against a further reference.
 void leave_out_empty(TeamColumns& columns);
+
+/// Reason for each group why its candidate cannot be tested on these columns; empty if it can.
+/// @param given_of gives a series of a local flight that has a value if a sample is used
+std::vector<std::string> troubles_of(
+    const TeamColumns& columns, const std::vector<ColumnGroup>& groups,
+    const std::function<std::vector<double>(const FlightColumns& flight)>& given_of);
 
 /// Removes candidates that cannot be tested, and their columns.
 void drop_untestable(CandidateSet& set, TeamColumns& columns);
