@@ -127,34 +127,26 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
   return flights.determinant + static_cast<double>(rows_) * std::log(left);
 }
 
-std::optional<VariableValues> StructureTest::values_of(const ValuesOfFlights& values) const {
-  VariableValues found(share_, [&](std::size_t f) {
+bool StructureTest::add(const TestedVariable& variable) {
+  const VariableValues known(share_, [&](std::size_t f) {
     std::vector<double> of_flight;
-    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back((*values[f])[record]);
+    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back((*variable.values[f])[record]);
     return of_flight;
   });
-  const auto missing = static_cast<double>(found.missing());
-  if (missing > max_missing * (missing + static_cast<double>(found.count()))) return std::nullopt;
-  return found;
-}
-
-bool StructureTest::add(const std::string& name, const ValuesOfFlights& values, double turn) {
-  const std::optional<VariableValues> known = values_of(values);
-  if (!known) return false;
-  if (turn > 0.0) return add(name, values, Smooth::periodic(*known, turn));
-  const std::size_t maximum = std::clamp(rows_ / bins_per_column, std::size_t{1}, max_columns);
-  return add(name, values, Smooth::with_knots_at_values(*known, maximum));
-}
-
-bool StructureTest::add_fine(const std::string& name, const ValuesOfFlights& values) {
-  const std::size_t maximum = std::min(rows_ / bins_per_column, fine_columns);
-  if (maximum <= max_columns) return false;
-  const std::optional<VariableValues> known = values_of(values);
-  return known && add(name, values, Smooth::with_even_knots(*known, maximum));
+  const auto missing = static_cast<double>(known.missing());
+  if (missing > max_missing * (missing + static_cast<double>(known.count()))) return false;
+  const std::size_t before = structures_.size();
+  const std::size_t maximum = rows_ / bins_per_column;
+  add(variable, variable.turn > 0.0
+                    ? Smooth::periodic(known, variable.turn)
+                    : Smooth::with_knots_at_values(known, std::clamp(maximum, std::size_t{1}, max_columns)));
+  if (variable.fine && maximum > max_columns)
+    add(variable, Smooth::with_even_knots(known, std::min(maximum, fine_columns)));
+  return structures_.size() > before;
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
-                                                       const ValuesOfFlights& values) const {
+                                                       const TestedVariable& variable) const {
   const Eigen::Index count = as_index(smooth.columns());
   std::vector<double> functions(smooth.columns());
   std::vector<Eigen::MatrixXd> columns;
@@ -164,7 +156,7 @@ std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
     Eigen::VectorXd counts = Eigen::VectorXd::Zero(as_index(bins.size()));
     double last = smooth.centre();
     for (std::size_t k = 0; k < bins.records().size(); ++k) {
-      const double value = (*values[f])[bins.records()[k]];
+      const double value = (*variable.values[f])[bins.records()[k]];
       if (std::isfinite(value)) last = value;
       smooth.evaluate(last, functions.data());
       sums.row(bins.bins()[k]) += Eigen::Map<const Eigen::RowVectorXd>(functions.data(), count);
@@ -224,14 +216,18 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   return taken;
 }
 
-bool StructureTest::add(const std::string& name, const ValuesOfFlights& values, const Smooth& smooth) {
-  if (smooth.columns() == 0) return false;
-  const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, values);
+void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
+  if (smooth.columns() == 0) return;
+  const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, variable);
   const auto sums =
       share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) { return products(f, columns[f]); });
   const Eigen::Index width = sums.cols() / as_index(whitened_.size());
   Structure structure;
-  structure.name = name;
+  structure.variable = &variable;
+  structure.name = variable.name;
+  structure.unit = variable.unit;
+  structure.description = variable.description;
+  structure.sampling = variable.sampling;
   structure.centre = smooth.centre();
   double with_all = std::numeric_limits<double>::infinity();
   double with_line = with_all;
@@ -239,7 +235,7 @@ bool StructureTest::add(const std::string& name, const ValuesOfFlights& values, 
   for (std::size_t k = 0; k < whitened_.size(); ++k) {
     const Whitened& flights = whitened_[k];
     const Taken taken = taken_by(sums.middleCols(width * as_index(k), width), flights);
-    if (taken.freedom == 0) return false;
+    if (taken.freedom == 0) return;
     const double freedom =
         std::max(1.0, static_cast<double>(rows_) - static_cast<double>(flights.inverse.rows()));
     const double variance = flights.squares / freedom;
@@ -276,15 +272,13 @@ bool StructureTest::add(const std::string& name, const ValuesOfFlights& values, 
     strong_ = columns;
   }
   structures_.push_back(structure);
-  return true;
 }
 
-std::optional<std::size_t> StructureTest::strongest() const {
-  if (structures_.empty()) return std::nullopt;
-  const auto found =
+double StructureTest::p_value() const {
+  const auto strongest =
       std::max_element(structures_.begin(), structures_.end(),
                        [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
-  return static_cast<std::size_t>(found - structures_.begin());
+  return strongest == structures_.end() ? 1.0 : chance_of(strongest->equivalent);
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::strong_structure() const {
@@ -315,13 +309,14 @@ bool ChangeSlope::agrees_with(const Structure& structure) const {
 }
 
 ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
-                             const ValuesOfFlights& values) {
+                             const TestedVariable& variable) {
   constexpr std::size_t window = 300;
   constexpr std::size_t fewest = 60;
   using Parts = std::vector<std::array<double, 2>>;  // correlation and slope of each part
   const auto of_flights = share.of_each_flight<Parts>([&](std::size_t f) {
     Parts parts;
     const std::vector<double>& residual = residuals[f];
+    const std::vector<double>& values = *variable.values[f];
     for (std::size_t first = 1; first < residual.size(); first += window) {
       double rr = 0.0;
       double vv = 0.0;
@@ -329,7 +324,7 @@ ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std
       std::size_t count = 0;
       for (std::size_t i = first; i < std::min(first + window, residual.size()); ++i) {
         const double change = residual[i] - residual[i - 1];
-        const double other = (*values[f])[i] - (*values[f])[i - 1];
+        const double other = values[i] - values[i - 1];
         if (!std::isfinite(change) || !std::isfinite(other)) continue;
         rr += change * change;
         vv += other * other;

@@ -2,13 +2,11 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
-#include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
 #include "diagnose/smooth.hpp"
+#include "diagnose/tested_variables.hpp"
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
 #include "numerics/whitening.hpp"
@@ -16,11 +14,10 @@
 
 namespace pcor::internal {
 
-/// Values of a variable on each flight, one for each record; of local flights only.
-using ValuesOfFlights = std::vector<std::shared_ptr<const std::vector<double>>>;
-
-/// Part of a model's residuals explained by functions of a variable, of which it has the name.
+/// Part of a model's residuals explained by functions of a variable, of which it has name, unit and
+/// description.
 struct Structure : EmpiricalPredictor {
+  const TestedVariable* variable = nullptr;
   double gain = 0.0;        ///< twice the gain in log-likelihood over drift alone, with the most likely drift
   double freedom = 0.0;     ///< number of functions
   double equivalent = 0.0;  ///< gain as chi2 of one degree of freedom, in units of the gain by chance
@@ -59,18 +56,15 @@ class StructureTest {
                 const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
                 const NoiseModel& noise, std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
 
-  /// Tries functions of a variable: its values of each flight, one for each record. Returns false and skips a
-  /// variable that is constant or has no value in more than a tenth of the used records.
-  /// @param turn full turn of an angle in its unit; 0 for other variables
-  bool add(const std::string& name, const ValuesOfFlights& values, double turn = 0.0);
-
-  /// Tries functions that bend many times over the range of the variable.
-  bool add_fine(const std::string& name, const ValuesOfFlights& values);
+  /// Tries functions of a variable, also such that bend many times over its range if it is `fine`. Returns
+  /// false and skips a variable that is constant or has no value in more than a tenth of the used records.
+  /// @param variable kept by address in the structures
+  bool add(const TestedVariable& variable);
 
   const std::vector<Structure>& structures() const { return structures_; }
 
-  /// Index of the variable with the largest equivalent; empty if no variable was added.
-  std::optional<std::size_t> strongest() const;
+  /// `chance_of` the largest equivalent; 1 without a structure.
+  double p_value() const;
 
   /// Probability that the best of all variables does as well on residuals that are shifted in time or have
   /// random signs, the larger of the two: extreme-value law (Gumbel 1958, Statistics of extremes) fitted to
@@ -103,10 +97,8 @@ class StructureTest {
     Eigen::Index freedom = 0;
   };
 
-  /// Values of all records used; nothing if too many are missing.
-  std::optional<VariableValues> values_of(const ValuesOfFlights& values) const;
-  bool add(const std::string& name, const ValuesOfFlights& values, const Smooth& smooth);
-  std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth, const ValuesOfFlights& values) const;
+  void add(const TestedVariable& variable, const Smooth& smooth);
+  std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth, const TestedVariable& variable) const;
   /// Products of the whitened functions of a flight with themselves, the model, the remaining residuals and
   /// the draws, in adjacent columns for each part of the drift.
   Eigen::MatrixXd products(std::size_t flight, const Eigen::MatrixXd& columns) const;
@@ -143,8 +135,8 @@ struct ChangeSlope {
   bool agrees_with(const Structure& structure) const;
 };
 
-/// @param residuals and @param values of local flights; missing values are ignored
+/// @param residuals of local flights; missing values are ignored
 ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
-                             const ValuesOfFlights& values);
+                             const TestedVariable& variable);
 
 }  // namespace pcor::internal

@@ -60,16 +60,13 @@ std::set<std::string> sensors_of(const ModelDefinition& model, const Reference& 
   return sensors;
 }
 
-EmpiricalPredictor predictor_of(const Structure& structure, const TestedVariable& tested, double p_value) {
+EmpiricalPredictor predictor_of(const Structure& structure, double p_value) {
   EmpiricalPredictor variable = structure;
-  variable.unit = tested.unit;
-  variable.description = tested.description;
-  variable.sampling = tested.sampling;
   variable.p_value = p_value;
   // Only a straight line gets a formula.
   const bool straight = std::abs(variable.slope) > 3.0 * variable.slope_error && variable.slope != 0.0 &&
                         variable.linear_r2 > 0.5 * variable.r2;
-  if (tested.in_file && straight)
+  if (structure.variable->in_file && straight)
     variable.formula = fmt::format("k * ({} {} {:.4g})", variable.name, variable.centre < 0.0 ? '+' : '-',
                                    std::abs(variable.centre));
   return variable;
@@ -117,16 +114,14 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   return after;
 }
 
-/// Test of structure in addition to some effects. @param aside see `StructureTest`
+/// Structure of variables in addition to some effects. @param aside see `StructureTest`
 StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_t>& chosen,
-                          std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {}) {
-  return {analysis.share(),
-          analysis.bins(),
-          analysis.columns_of(chosen),
-          analysis.residuals(),
-          analysis.noise(),
-          seed,
-          aside};
+                          const std::vector<TestedVariable>& variables, std::uint64_t seed,
+                          const std::vector<Eigen::MatrixXd>& aside = {}) {
+  StructureTest test(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
+                     analysis.noise(), seed, aside);
+  for (const TestedVariable& variable : variables) test.add(variable);
+  return test;
 }
 
 /// Moves variables whose changes are correlated with those of the residual to `variables` if they may be its
@@ -135,10 +130,9 @@ void sort_correlated(const Analysis& analysis,
                      std::vector<std::pair<TestedVariable, ChangeSlope>>& correlated, std::uint64_t seed,
                      std::vector<TestedVariable>& variables, Unexplained& found) {
   if (correlated.empty()) return;
-  StructureTest test = test_beside(analysis, analysis.result().chosen, seed);
+  StructureTest test = test_beside(analysis, analysis.result().chosen, {}, seed);
   for (auto& [variable, slope] : correlated) {
-    if (test.add(variable.name, variable.values, variable.turn) &&
-        slope.agrees_with(test.structures().back())) {
+    if (test.add(variable) && slope.agrees_with(test.structures().back())) {
       variables.push_back(std::move(variable));
     } else {
       found.shares_noise.push_back(variable.name);
@@ -165,7 +159,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
       found.computed.push_back(variable.name);
       continue;
     }
-    const ChangeSlope slope = slope_of_changes(analysis.share(), after, variable.values);
+    const ChangeSlope slope = slope_of_changes(analysis.share(), after, variable);
     if (slope.is_correlated()) {
       correlated.emplace_back(std::move(variable), slope);
     } else {
@@ -177,44 +171,24 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
   return variables;
 }
 
-/// Structures in addition to some effects, and the variable of each.
-struct Tested {
-  StructureTest test;
-  std::vector<const TestedVariable*> variables{};
+/// Whether the structure with the greatest gain, for its degrees of freedom, is significant.
+bool explains_most_beyond_chance(const StructureTest& test) {
+  const std::vector<Structure>& all = test.structures();
+  const auto maximum = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
+    return a.gain - a.freedom < b.gain - b.freedom;
+  });
+  return maximum != all.end() && test.chance_of(maximum->equivalent) < chance;
+}
 
-  Tested(const Analysis& analysis, const std::vector<std::size_t>& chosen,
-         const std::vector<TestedVariable>& all, std::uint64_t seed)
-      : test(test_beside(analysis, chosen, seed)) {
-    add(all);
-    const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
-    if (strong.empty() || explains_most_beyond_chance()) return;
-    // The chance level may be too high only because its residuals contain that structure.
-    test = test_beside(analysis, chosen, seed, strong);
-    variables.clear();
-    add(all);
-  }
-
-  void add(const std::vector<TestedVariable>& all) {
-    for (const TestedVariable& variable : all) {
-      if (test.add(variable.name, variable.values, variable.turn)) variables.push_back(&variable);
-      if (variable.fine && test.add_fine(variable.name, variable.values)) variables.push_back(&variable);
-    }
-  }
-
-  /// Whether the structure with the greatest gain, for its degrees of freedom, is significant.
-  bool explains_most_beyond_chance() const {
-    const std::vector<Structure>& all = test.structures();
-    const auto maximum = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
-      return a.gain - a.freedom < b.gain - b.freedom;
-    });
-    return maximum != all.end() && test.chance_of(maximum->equivalent) < chance;
-  }
-
-  double p_value() const {
-    const std::optional<std::size_t> best = test.strongest();
-    return best ? test.chance_of(test.structures()[*best].equivalent) : 1.0;
-  }
-};
+/// Structure of all variables in addition to some effects.
+StructureTest test_all(const Analysis& analysis, const std::vector<std::size_t>& chosen,
+                       const std::vector<TestedVariable>& variables, std::uint64_t seed) {
+  StructureTest test = test_beside(analysis, chosen, variables, seed);
+  const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
+  if (strong.empty() || explains_most_beyond_chance(test)) return test;
+  // The chance level may be too high only because its residuals contain that structure.
+  return test_beside(analysis, chosen, variables, seed, strong);
+}
 
 /// Variable minus its middle at every record; missing values repeat the previous one.
 Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
@@ -228,9 +202,9 @@ Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
 }
 
 /// Lines in variables, in bins, for each local flight against each reference: one column per variable and
-/// reference. @param variables their indices
-std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& tested,
-                                      const std::vector<std::size_t>& variables) {
+/// reference.
+std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis,
+                                      const std::vector<const Structure*>& structures) {
   const Eigen::Index references = as_index(analysis.reference_count());
   const std::vector<FlightColumns>& flights = analysis.flights();
   std::vector<Eigen::MatrixXd> lines;
@@ -238,40 +212,40 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
     const FlightColumns& flight = analysis.flight(f);
     const Binning& bins = analysis.bins(f);
     Eigen::MatrixXd& columns = lines.emplace_back(
-        Eigen::MatrixXd::Zero(as_index(bins.size()), references * as_index(variables.size())));
+        Eigen::MatrixXd::Zero(as_index(bins.size()), references * as_index(structures.size())));
     const auto known = std::find_if(flights.begin(), flights.end(), [&flight](const FlightColumns& other) {
       return other.file == flight.file;
     });
     if (known == flights.end() || !analysis.whole_share().is_local(f)) continue;
     const auto position = static_cast<std::size_t>(known - flights.begin());
-    for (std::size_t k = 0; k < variables.size(); ++k) {
-      columns.col(references * as_index(k) + as_index(flight.reference)) = bins.means(line_in(
-          *tested.variables[variables[k]]->values[position], tested.test.structures()[variables[k]].centre));
+    for (std::size_t k = 0; k < structures.size(); ++k) {
+      columns.col(references * as_index(k) + as_index(flight.reference)) =
+          bins.means(line_in(*structures[k]->variable->values[position], structures[k]->centre));
     }
   }
   return lines;
 }
 
 /// Possible locations of a cause: at the static ports, the laser or the thermometer it leaves the total
-/// pressures unchanged; at the pitot or at the transducers it changes them. @param numbers indices of the
-/// variables
-void find_places(const Analysis& analysis, const Tested& tested, const std::vector<std::size_t>& numbers,
+/// pressures unchanged; at the pitot or at the transducers it changes them. @param traced the structures of
+/// the variables
+void find_places(const Analysis& analysis, const std::vector<const Structure*>& traced,
                  const References& references, std::vector<EmpiricalPredictor>& variables) {
   constexpr double seen = 3.0;           // standard errors
   constexpr double would_be_seen = 6.0;  // the same slope as against the first reference
   const std::size_t count = analysis.reference_count();
   std::size_t blind = 0;  // first reference that is insensitive to static defects
   while (blind < count && references[blind]->sees_static_defect()) ++blind;
-  if (blind == 0 || blind >= count || numbers.empty()) return;
-  std::vector<ColumnGroup> groups(count * numbers.size());
+  if (blind == 0 || blind >= count || traced.empty()) return;
+  std::vector<ColumnGroup> groups(count * traced.size());
   for (std::size_t k = 0; k < groups.size(); ++k) {
     groups[k].first = as_index(k);
     groups[k].count = 1;
     groups[k].bounds.resize(1);
   }
-  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, tested, numbers));
+  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, traced));
   const Search search(scores, analysis.base(), groups);
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
+  for (std::size_t k = 0; k < traced.size(); ++k) {
     EmpiricalPredictor& variable = variables[k];
     const GroupScore total = search.score(count * k + blind, {count * k});
     if (total.freedom == 0.0) continue;
@@ -359,8 +333,8 @@ struct LineRival {
 /// the expected number of effects and of causes among the variables, shared by those that were tested. The
 /// line has a separate slope against each reference because the location of the cause is unknown; the shapes
 /// of the effects are uncertain. Inputs of an effect do not compete with it.
-LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
-                    const EffectInputs& inputs) {
+LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& chosen,
+                    const StructureTest& tested, const EffectInputs& inputs) {
   constexpr double expected_effects = 0.5;
   constexpr double expected_variables = 0.1;
   const auto is_input = [&](const TestedVariable& variable) {
@@ -368,14 +342,14 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
            std::any_of(inputs.quantities.begin(), inputs.quantities.end(),
                        [&](Quantity quantity) { return is_image(analysis, variable, quantity); });
   };
-  std::vector<std::size_t> causes;
-  for (std::size_t i = 0; i < tested.variables.size(); ++i) {
-    const TestedVariable& variable = *tested.variables[i];
-    if (variable.may_be_cause && variable.turn == 0.0 && !is_input(variable)) causes.push_back(i);
+  std::vector<const Structure*> causes;
+  for (const Structure& structure : tested.structures()) {
+    const TestedVariable& variable = *structure.variable;
+    if (variable.may_be_cause && variable.turn == 0.0 && !is_input(variable)) causes.push_back(&structure);
   }
   LineRival best;
   if (causes.empty()) return best;
-  const Competition competition = analysis.competition(chosen, lines_in(analysis, tested, causes));
+  const Competition competition = analysis.competition(chosen, lines_in(analysis, causes));
   const Search search(competition.system, analysis.base(), competition.groups);
   std::vector<std::size_t> effects(chosen.size());
   std::iota(effects.begin(), effects.end(), std::size_t{0});
@@ -391,37 +365,36 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
   for (std::size_t k = 0; k < causes.size(); ++k) {
     if (search.is_absorbed(chosen.size() + k)) continue;
     const double log_odds = search.evidence({chosen.size() + k}) - against;
-    if (log_odds > best.log_odds) best = {tested.variables[causes[k]]->name, log_odds};
+    if (log_odds > best.log_odds) best = {causes[k]->name, log_odds};
   }
   return best;
 }
 
-/// Indices of variables with significant structure, without duplicates.
-std::vector<std::size_t> add_traced(const Tested& tested, Diagnosis& diagnosis) {
+/// Adds the variables with significant structure, each once, and returns their structures.
+std::vector<const Structure*> add_traced(const StructureTest& tested, Diagnosis& diagnosis) {
   std::vector<EmpiricalPredictor>& variables = diagnosis.unexplained.variables;
-  const std::vector<Structure>& structures = tested.test.structures();
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < structures.size(); ++i) {
-    if (tested.test.chance_of(structures[i].equivalent) < chance) order.push_back(i);
+  std::vector<const Structure*> order;
+  for (const Structure& structure : tested.structures()) {
+    if (tested.chance_of(structure.equivalent) < chance) order.push_back(&structure);
   }
   // A straight line that explains as much as a curve is preferred.
-  const auto merit = [&](std::size_t i) {
-    return std::max(structures[i].gain - 2.0 * structures[i].freedom, structures[i].line_gain - 2.0);
+  const auto merit = [](const Structure& each) {
+    return std::max(each.gain - 2.0 * each.freedom, each.line_gain - 2.0);
   };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return merit(a) > merit(b); });
+  std::sort(order.begin(), order.end(),
+            [&](const Structure* a, const Structure* b) { return merit(*a) > merit(*b); });
   std::set<std::string> named;
-  std::vector<std::size_t> numbers;
-  for (const std::size_t i : order) {
+  std::vector<const Structure*> traced;
+  for (const Structure* const structure : order) {
     if (variables.size() == max_variables) break;
-    if (!named.insert(structures[i].name).second) continue;
-    variables.push_back(
-        predictor_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
-    numbers.push_back(i);
-    if (numbers.size() > 1) continue;
+    if (!named.insert(structure->name).second) continue;
+    variables.push_back(predictor_of(*structure, tested.chance_of(structure->equivalent)));
+    traced.push_back(structure);
+    if (traced.size() > 1) continue;
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f)
-      diagnosis.flights[f].traced = *tested.variables[i]->values[f];
+      diagnosis.flights[f].traced = *structure->variable->values[f];
   }
-  return numbers;
+  return traced;
 }
 
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
@@ -497,17 +470,17 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
   const std::vector<TestedVariable> variables =
       variables_to_test(analysis, files, model, first_of(references), options, after, found);
 
-  Tested tested(analysis, chosen, variables, options.seed);
+  StructureTest tested = test_all(analysis, chosen, variables, options.seed);
   const double by_variables = tested.p_value();
   double left = 0.0;
-  for (const Structure& structure : tested.test.structures()) {
+  for (const Structure& structure : tested.structures()) {
     if (by_variables < chance) left = std::max(left, structure.gain - structure.freedom);
   }
   LineRival line;
   if (!chosen.empty())
     line = best_line(analysis, chosen, tested, effect_inputs(diagnosis.findings, extended));
   const bool overrules = line.log_odds > sure;
-  if (overrules) tested = Tested(analysis, {}, variables, options.seed);
+  if (overrules) tested = test_all(analysis, {}, variables, options.seed);
 
   const auto rms_of_flights = [&](std::vector<double> FlightDiagnosis::*series) {
     return rms_of(
@@ -524,9 +497,9 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
                                  analysis.share(), [&](std::size_t f) -> const auto& { return residuals[f]; })
                            : rms_of_flights(&FlightDiagnosis::after);
     const double noise_rms = diagnosis.noise_rms_with_findings;
-    const std::vector<std::size_t> traced = add_traced(tested, diagnosis);
+    const std::vector<const Structure*> traced = add_traced(tested, diagnosis);
     // Retained effects describe a part of every reference that the lines do not include.
-    if (chosen.empty() || overrules) find_places(analysis, tested, traced, references, found.variables);
+    if (chosen.empty() || overrules) find_places(analysis, traced, references, found.variables);
     // Part beyond the noise; at least the drift and the part that the best variable explains.
     found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
     if (!found.variables.empty())

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -58,8 +60,12 @@ Eigen::VectorXd as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-ValuesOfFlights one_flight(const std::vector<double>& values) {
-  return {std::make_shared<const std::vector<double>>(values)};
+TestedVariable one_flight(const std::string& name, const std::vector<double>& values, double turn = 0.0) {
+  TestedVariable variable;
+  variable.name = name;
+  variable.turn = turn;
+  variable.values = {std::make_shared<const std::vector<double>>(values)};
+  return variable;
 }
 
 /// Residuals with correlated noise, a base of a constant, and random-walk variables.
@@ -95,13 +101,15 @@ struct Flight {
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
     StructureTest result(FlightPartition(1), bins, columns, residuals, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
-      result.add("v" + std::to_string(k), one_flight(variables[k]));
+      result.add(one_flight("v" + std::to_string(k), variables[k]));
     return result;
   }
 };
 
 const Structure& strongest(const StructureTest& test) {
-  return test.structures().at(test.strongest().value());
+  return *std::max_element(
+      test.structures().begin(), test.structures().end(),
+      [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
 }
 
 }  // namespace
@@ -364,7 +372,7 @@ TEST(StructureTest, FindsAnAngle) {
     flight.residuals[0][i] +=
         0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
   StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
-  ASSERT_TRUE(test.add("heading", one_flight(flight.variables[2]), 360.0));
+  ASSERT_TRUE(test.add(one_flight("heading", flight.variables[2], 360.0)));
   EXPECT_GT(test.structures()[0].gain, 50.0);
   EXPECT_EQ(test.structures()[0].freedom, 4.0);
   EXPECT_EQ(test.structures()[0].slope, 0.0);
@@ -384,18 +392,18 @@ TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
   StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
-  EXPECT_FALSE(test.add("constant", one_flight(constant)));
+  EXPECT_FALSE(test.add(one_flight("constant", constant)));
   std::vector<double> gappy = flight.variables[0];
   for (std::size_t i = 100; i < 120; ++i) gappy[i] = missing;
-  EXPECT_TRUE(test.add("gappy", one_flight(gappy)));
+  EXPECT_TRUE(test.add(one_flight("gappy", gappy)));
   for (std::size_t i = 120; i < 150; ++i) gappy[i] = missing;
-  EXPECT_FALSE(test.add("too gappy", one_flight(gappy)));
+  EXPECT_FALSE(test.add(one_flight("too gappy", gappy)));
   ASSERT_EQ(test.structures().size(), 1U);
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
 ChangeSlope changes(const std::vector<double>& residual, const std::vector<double>& variable) {
-  return slope_of_changes(FlightPartition(1), {residual}, one_flight(variable));
+  return slope_of_changes(FlightPartition(1), {residual}, one_flight("", variable));
 }
 
 TEST(ChangeSlope, EqualsTheSlopeOfACause) {
