@@ -48,7 +48,6 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_share_ = share_.part(0, flights_.size());
-  first_bins_.assign(binned_.bins.begin(), binned_.bins.begin() + as_index(flights_.size()));
   const Eigen::Index columns_count = binned_.columns.front().cols();
   for (const Eigen::VectorXd& effect : added) {
     added_.emplace_back(Eigen::VectorXd::Zero(columns_count));
@@ -101,10 +100,13 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
   return likelihood_ - static_cast<double>(columns) * result_.threshold;
 }
 
-std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>& groups) const {
-  std::vector<Eigen::MatrixXd> result;
-  for (std::size_t f = 0; f < flights_.size(); ++f)
-    result.emplace_back(binned_.columns[f](Eigen::all, indices_of(groups)));
+BinnedFlights Analysis::binned(const std::vector<std::size_t>& groups) const {
+  BinnedFlights result;
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    result.bins.push_back(binned_.bins[f]);
+    result.columns.emplace_back(binned_.columns[f](Eigen::all, indices_of(groups)));
+    result.residuals.push_back(binned_.residuals[f]);
+  }
   return result;
 }
 

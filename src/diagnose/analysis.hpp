@@ -58,7 +58,6 @@ class Analysis {
   const FlightColumns& flight(std::size_t number) const {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }
-  const std::vector<Binning>& bins() const { return first_bins_; }
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Noise against the first reference, with the levels of local flights.
   NoiseModel noise() const { return noise_of_first_reference(binned_, noise_); }
@@ -81,12 +80,9 @@ class Analysis {
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
 
-  /// Columns of the base and of some groups in bins, for each flight.
-  std::vector<Eigen::MatrixXd> columns_of(const std::vector<std::size_t>& groups) const;
-  /// Residuals against the first reference in bins, outliers replaced.
-  std::vector<Eigen::VectorXd> residuals() const {
-    return {binned_.residuals.begin(), binned_.residuals.begin() + as_index(flights_.size())};
-  }
+  /// Columns of the base and of some groups, and residuals with outliers replaced, in bins, against the first
+  /// reference.
+  BinnedFlights binned(const std::vector<std::size_t>& groups) const;
 
   /// Coefficients of all columns, zero except those of base and groups.
   /// @param estimate of base and groups, in the order of `Search::fit`
@@ -161,7 +157,6 @@ class Analysis {
   std::uint64_t seed_;
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
-  std::vector<Binning> first_bins_{};
   std::vector<NoiseModel> noise_{};
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;

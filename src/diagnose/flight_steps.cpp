@@ -105,21 +105,20 @@ FlightOffset step_of(Eigen::Index one, const Means& all) {
 
 }  // namespace
 
-std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
-                                            const std::vector<Eigen::MatrixXd>& columns,
-                                            const std::vector<Eigen::VectorXd>& residuals,
+std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const BinnedFlights& binned,
                                             const NoiseModel& noise) {
+  const std::vector<Binning>& bins = binned.bins;
   std::vector<FlightOffset> steps(bins.size());
   const auto rows = share.sum_of_each_flight<std::size_t>([&](std::size_t f) { return bins[f].size(); });
   // Products of whitened columns, a constant and the residual; empty for a flight without bins.
   auto found = share.of_each_flight<Eigen::MatrixXd>([&](std::size_t f) -> Eigen::MatrixXd {
     if (bins[f].size() == 0) return {};
     // A model without a column is one with a column of zeros.
-    const Eigen::Index model = std::max<Eigen::Index>(columns[f].cols(), 1);
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(columns[f].rows(), model + 2);
-    all.leftCols(columns[f].cols()) = columns[f];
+    const Eigen::Index model = std::max<Eigen::Index>(binned.columns[f].cols(), 1);
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(binned.columns[f].rows(), model + 2);
+    all.leftCols(binned.columns[f].cols()) = binned.columns[f];
     all.col(model).setOnes();
-    all.col(model + 1) = residuals[f];
+    all.col(model + 1) = binned.residuals[f];
     const Eigen::MatrixXd white = whitened(all, bins[f], noise, f);
     return white.transpose() * white;
   });

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
-#include "numerics/binning.hpp"
-#include "numerics/noise_model.hpp"
-#include "parallel/flight_partition.hpp"
+#include "campaign/columns.hpp"
 
 namespace pcor::internal {
 
@@ -16,13 +13,10 @@ namespace pcor::internal {
 /// flights are against one reference. The p value is that of the largest step of all flights under drift and
 /// scatter alone.
 ///
-/// @param columns of the model, in bins, of each local flight; @param residuals likewise, hPa; @param noise
-/// likewise
+/// @param binned with the columns of the model; @param noise of each local flight
 /// @return one step per flight, without its name; p value 1 if there is no other flight. If there are two
 /// flights, only the second has a step, because both differ by the same amount.
-std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const std::vector<Binning>& bins,
-                                            const std::vector<Eigen::MatrixXd>& columns,
-                                            const std::vector<Eigen::VectorXd>& residuals,
+std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const BinnedFlights& binned,
                                             const NoiseModel& noise);
 
 }  // namespace pcor::internal

@@ -85,37 +85,37 @@ Eigen::MatrixXd DrawnResiduals::products_with(const Eigen::MatrixXd& columns) co
   return side_by_side(columns.transpose() * shifted, by_minutes.transpose() * signs);
 }
 
-StructureTest::StructureTest(const FlightPartition& share, const std::vector<Binning>& bins,
-                             const std::vector<Eigen::MatrixXd>& columns,
-                             const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise,
-                             std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside)
-    : share_(share), bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
+StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& binned,
+                             const NoiseModel& noise, std::uint64_t seed,
+                             const std::vector<Eigen::MatrixXd>& aside)
+    : share_(share), bins_(binned.bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
-  std::vector<Eigen::MatrixXd> with_aside = columns;
-  for (std::size_t f = 0; f < aside.size(); ++f) with_aside[f] = side_by_side(columns[f], aside[f]);
+  const std::vector<Eigen::VectorXd>& residuals = binned.residuals;
+  std::vector<Eigen::MatrixXd> with_aside = binned.columns;
+  for (std::size_t f = 0; f < aside.size(); ++f) with_aside[f] = side_by_side(binned.columns[f], aside[f]);
   for (const double part : parts_of_drift) {
     if (part < 1.0 && !noise.drifts()) break;
     Whitened& flights = whitened_.emplace_back();
     NoiseModel left = noise;
     for (double& slow : left.slow) slow *= part;
-    const WhitenedSystem scores = find_scores(share, bins, columns, residuals, left);
+    const WhitenedSystem scores = find_scores(share, bins_, binned.columns, residuals, left);
     rows_ = scores.row_count;
     const Eigen::Index width = scores.columns();
     flights.inverse = information_inverse(scores.information.topLeftCorner(width, width));
     flights.squares = products_after(scores.information, width)(0, 0);
     flights.left = left_of(scores);
-    for (std::size_t f = 0; f < bins.size(); ++f) {
-      flights.whitening.emplace_back(bins[f], left, f);
+    for (std::size_t f = 0; f < bins_.size(); ++f) {
+      flights.whitening.emplace_back(bins_[f], left, f);
       flights.model.emplace_back();
       if (share.is_local(f)) flights.model[f] = scores.rows[f].leftCols(width);
     }
     flights.determinant = share.sum_of_each_flight<double>(
         [&flights](std::size_t f) { return flights.whitening[f].log_determinant(); });
     const std::vector<Eigen::VectorXd> noise_alone =
-        aside.empty() ? flights.left : left_of(find_scores(share, bins, with_aside, residuals, left));
-    flights.drawn.resize(bins.size());
+        aside.empty() ? flights.left : left_of(find_scores(share, bins_, with_aside, residuals, left));
+    flights.drawn.resize(bins_.size());
     flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-      flights.drawn[f] = drawn(noise_alone[f], bins[f], seed + f, seed);
+      flights.drawn[f] = drawn(noise_alone[f], bins_[f], seed + f, seed);
       return flights.drawn[f].products_with(flights.model[f]);
     });
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
@@ -130,7 +130,7 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
 bool StructureTest::add(const TestedVariable& variable) {
   const VariableValues known(share_, [&](std::size_t f) {
     std::vector<double> of_flight;
-    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back((*variable.values[f])[record]);
+    for (const std::size_t record : bins_[f].records()) of_flight.push_back((*variable.values[f])[record]);
     return of_flight;
   });
   const auto missing = static_cast<double>(known.missing());
@@ -150,8 +150,8 @@ std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
   const Eigen::Index count = as_index(smooth.columns());
   std::vector<double> functions(smooth.columns());
   std::vector<Eigen::MatrixXd> columns;
-  for (std::size_t f = 0; f < bins_->size(); ++f) {
-    const Binning& bins = (*bins_)[f];
+  for (std::size_t f = 0; f < bins_.size(); ++f) {
+    const Binning& bins = bins_[f];
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins.size()), count);
     Eigen::VectorXd counts = Eigen::VectorXd::Zero(as_index(bins.size()));
     double last = smooth.centre();

@@ -49,12 +49,11 @@ struct DrawnResiduals {
 class StructureTest {
  public:
   /// @param share of the flights: a member of a team has the bins and all other data of its local flights
-  /// @param columns of the model, base and chosen effects, in bins; @param residuals likewise
+  /// @param binned columns of the model, base and chosen effects, and residuals
   /// @param noise with all drift remaining after the model; @param seed of shifts and signs
   /// @param aside columns to subtract from the residuals that give the chance level; may be empty
-  StructureTest(const FlightPartition& share, const std::vector<Binning>& bins,
-                const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
-                const NoiseModel& noise, std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
+  StructureTest(const FlightPartition& share, const BinnedFlights& binned, const NoiseModel& noise,
+                std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
 
   /// Tries functions of a variable, also such that bend many times over its range if it is `fine`. Returns
   /// false and skips a variable that is constant or has no value in more than a tenth of the used records.
@@ -107,7 +106,7 @@ class StructureTest {
   double minus_likelihood(const Whitened& flights, double taken) const;
 
   FlightPartition share_;
-  const std::vector<Binning>* bins_;
+  std::vector<Binning> bins_;
   std::size_t rows_ = 0;              // all flights
   std::vector<Whitened> whitened_{};  // one per remaining part of the drift, full drift first
   double alone_ = 0.0;                // minus twice the log-likelihood of drift alone

@@ -118,8 +118,7 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
 StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_t>& chosen,
                           const std::vector<TestedVariable>& variables, std::uint64_t seed,
                           const std::vector<Eigen::MatrixXd>& aside = {}) {
-  StructureTest test(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
-                     analysis.noise(), seed, aside);
+  StructureTest test(analysis.share(), analysis.binned(chosen), analysis.noise(), seed, aside);
   for (const TestedVariable& variable : variables) test.add(variable);
   return test;
 }
@@ -400,8 +399,7 @@ std::vector<const Structure*> add_traced(const StructureTest& tested, Diagnosis&
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
   std::vector<FlightOffset> steps;
   if (analysis.flights().size() < 2) return steps;
-  steps = find_mean_offsets(analysis.share(), analysis.bins(), analysis.columns_of(chosen),
-                            analysis.residuals(), analysis.noise_beside_offsets());
+  steps = find_mean_offsets(analysis.share(), analysis.binned(chosen), analysis.noise_beside_offsets());
   for (std::size_t f = 0; f < steps.size(); ++f) steps[f].flight = analysis.flights()[f].samples->name;
   steps.erase(std::remove_if(steps.begin(), steps.end(),
                              [](const FlightOffset& step) { return !(step.p_value < chance); }),

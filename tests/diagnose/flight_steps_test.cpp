@@ -35,7 +35,7 @@ struct Flights {
   }
 
   std::vector<FlightOffset> steps() const {
-    return find_mean_offsets(FlightPartition(bins.size()), bins, columns, residuals, noise);
+    return find_mean_offsets(FlightPartition(bins.size()), {bins, columns, residuals}, noise);
   }
 };
 

@@ -99,7 +99,7 @@ struct Flight {
   }
 
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
-    StructureTest result(FlightPartition(1), bins, columns, residuals, noise, 1, aside);
+    StructureTest result(FlightPartition(1), {bins, columns, residuals}, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
       result.add(one_flight("v" + std::to_string(k), variables[k]));
     return result;
@@ -371,7 +371,7 @@ TEST(StructureTest, FindsAnAngle) {
   for (Eigen::Index i = 0; i < 900; ++i)
     flight.residuals[0][i] +=
         0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
-  StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
+  StructureTest test(FlightPartition(1), {flight.bins, flight.columns, flight.residuals}, flight.noise, 1);
   ASSERT_TRUE(test.add(one_flight("heading", flight.variables[2], 360.0)));
   EXPECT_GT(test.structures()[0].gain, 50.0);
   EXPECT_EQ(test.structures()[0].freedom, 4.0);
@@ -390,7 +390,7 @@ TEST(StructureTest, ModelledEffectsAreNotStructure) {
 
 TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
-  StructureTest test(FlightPartition(1), flight.bins, flight.columns, flight.residuals, flight.noise, 1);
+  StructureTest test(FlightPartition(1), {flight.bins, flight.columns, flight.residuals}, flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
   EXPECT_FALSE(test.add(one_flight("constant", constant)));
   std::vector<double> gappy = flight.variables[0];
