@@ -298,6 +298,13 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   return diagnosis;
 }
 
+bool may_be_of(bool reference, const Finding& finding) {
+  return finding.of_reference == reference ||
+         std::any_of(finding.aliases.begin(), finding.aliases.end(), [reference](const Alias& alias) {
+           return alias.probability >= min_probability && is_on_other_system(alias.effect) == reference;
+         });
+}
+
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
@@ -325,17 +332,6 @@ std::string Finding::size_text(const char* unit) const {
   return fmt::format("{:.3f}{}{}{}", largest_rms, unit, largest_reference.empty() ? "" : " by ",
                      largest_reference);
 }
-
-namespace {
-
-bool may_be_of(bool reference, const Finding& finding) {
-  return finding.of_reference == reference ||
-         std::any_of(finding.aliases.begin(), finding.aliases.end(), [reference](const Alias& alias) {
-           return alias.probability >= min_probability && is_on_other_system(alias.effect) == reference;
-         });
-}
-
-}  // namespace
 
 bool Finding::may_be_of_model() const { return may_be_of(false, *this); }
 

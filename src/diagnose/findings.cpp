@@ -451,11 +451,7 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
       rivalry.rests.push_back(indices_of(instead, analysis.groups(), analysis.base()));
     }
     const Plan best = best_plan(regimes, rivalry);
-    finding.advice.sentence = text_of(best, finding.id(), finding.effect, rivals);
-    if (best.regime == nullptr) continue;
-    finding.advice.manoeuvre = info_of(best.regime->regime).name;
-    finding.advice.duration = best.duration();
-    finding.advice.power = best.power;
+    finding.advice = advice_of(best, finding.id(), finding.effect, rivals);
   }
 }
 
@@ -535,10 +531,9 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
       const double statistical = std::abs(estimate.value) + two_sided_95 * estimate.standard_error;
       limit.limits.push_back(std::min(statistical, largest));
       seen = seen || statistical < largest;
-      const auto number = static_cast<std::size_t>(column);
-      if (const double usual = number < group.usual.size() ? group.usual[number] : 0.0; usual != 0.0)
+      if (estimate.typical != 0.0)
         limit.chi2_at_usual_size =
-            std::fmax(limit.chi2_at_usual_size, std::pow(usual / estimate.standard_error, 2));
+            std::fmax(limit.chi2_at_usual_size, std::pow(estimate.typical / estimate.standard_error, 2));
       // The part of the coefficient at its limit that the base does not absorb.
       const double remaining = search.remaining(g, Eigen::VectorXd::Unit(group.count, column));
       const double rms = rms_of_column(analysis, candidates[g], group.first + column, limit.limits.back());

@@ -141,8 +141,8 @@ Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem&
   return 1.0 - best.power <= 0.5 * (1.0 - power_of(now)) ? best : Plan{};
 }
 
-std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
-                    const std::vector<std::string>& rivals) {
+Advice advice_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
+                 const std::vector<std::string>& rivals) {
   const std::string names = join_list(rivals);
   if (plan.regime == nullptr) {
     const auto effect_of = [](const std::string& name) { return name.substr(name.rfind(':') + 1); };
@@ -152,15 +152,16 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
     const std::string general =
         is_of_either_system ? "a further --reference (lams, wind or height) shows which system has the error"
                             : general_advice(id, effect);
-    return fmt::format("no regime of these flights would separate {} from {} if repeated up to {} times{}{}",
-                       id, names, max_repeats, general.empty() ? "" : "; ", general);
+    return {fmt::format("no regime of these flights would separate {} from {} if repeated up to {} times{}{}",
+                        id, names, max_repeats, general.empty() ? "" : "; ", general)};
   }
   const bool is_one = plan.repeats == 1;
-  return fmt::format("fly {} of {:.1f} min{} as on {}: probability {:.0f} % that {} {} from {}",
-                     intervals_text(plan.regime->regime, plan.repeats),
-                     plan.regime->duration / seconds_per_minute, is_one ? "" : " each", plan.regime->flight,
-                     std::min(99.0, 100.0 * plan.power), is_one ? "it separates" : "they separate", id,
-                     names);
+  const Regime regime = plan.regime->regime;
+  return {fmt::format("fly {} of {:.1f} min{} as on {}: probability {:.0f} % that {} {} from {}",
+                      intervals_text(regime, plan.repeats), plan.regime->duration / seconds_per_minute,
+                      is_one ? "" : " each", plan.regime->flight, std::min(99.0, 100.0 * plan.power),
+                      is_one ? "it separates" : "they separate", id, names),
+          std::string(info_of(regime).name), plan.duration(), plan.power};
 }
 
 std::string general_advice(const std::string& id, const ModelEffect& effect) {

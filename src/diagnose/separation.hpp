@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/diagnose/diagnose.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include "campaign/columns.hpp"
 #include "campaign/whitened.hpp"
@@ -64,8 +65,8 @@ Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem&
 
 /// Regime, flight time and probability of separating the effect from its rivals; general advice for a plan
 /// without a regime. @param id of the effect, as in a finding
-std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
-                    const std::vector<std::string>& rivals);
+Advice advice_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
+                 const std::vector<std::string>& rivals);
 
 /// General advice on separating a catalogue effect from similar ones, independent of the flights.
 std::string general_advice(const std::string& id, const ModelEffect& effect);

@@ -105,7 +105,7 @@ TEST(Separation, PlanUsesTheRegimeWithMostInformationPerTime) {
                                    regime_of(Regime::circle, rows, 160.0)};
   Plan plan = best_plan(regimes, rivalry);
   ASSERT_EQ(plan.regime, &regimes[1]);
-  EXPECT_THAT(text_of(plan, "static-lag", neutral_effect("static-lag"), {"temp-lag"}),
+  EXPECT_THAT(advice_of(plan, "static-lag", neutral_effect("static-lag"), {"temp-lag"}).sentence,
               HasSubstr("fly 1 more circle of 2.7 min as on second.nc"));
   regimes[1].duration = 16000.0;
   plan = best_plan(regimes, rivalry);
@@ -122,7 +122,7 @@ TEST(Separation, WorstRivalDeterminesThePlan) {
   EXPECT_EQ(of_two.repeats, of_one.repeats);
   EXPECT_EQ(of_two.power, of_one.power);
   const std::string text =
-      text_of(of_two, "static-lag", neutral_effect("static-lag"), {"temp-lag", "total-lag"});
+      advice_of(of_two, "static-lag", neutral_effect("static-lag"), {"temp-lag", "total-lag"}).sentence;
   EXPECT_THAT(text, HasSubstr("more yaw manoeuvre"));
   EXPECT_THAT(text, HasSubstr("static-lag from temp-lag and total-lag"));
 }
@@ -137,9 +137,9 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
     EXPECT_EQ(plan.regime, nullptr);
     EXPECT_EQ(plan.power, 0.0);
     // The manoeuvres of the catalogue separate effects, not systems.
-    EXPECT_THAT(text_of({}, "static-lag", lag, {"temp-lag", "reference:static-lag"}),
+    EXPECT_THAT(advice_of({}, "static-lag", lag, {"temp-lag", "reference:static-lag"}).sentence,
                 HasSubstr("--reference"));
-    const std::string text = text_of(plan, "reference:static-lag", lag, {"temp-lag"});
+    const std::string text = advice_of(plan, "reference:static-lag", lag, {"temp-lag"}).sentence;
     EXPECT_THAT(text, HasSubstr(manoeuvre));
     EXPECT_THAT(text, Not(HasSubstr("%")));
   }
