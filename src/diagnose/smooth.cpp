@@ -25,36 +25,37 @@ double spline_at(double x) {
 VariableValues::VariableValues(const FlightPartition& share,
                                const std::function<std::vector<double>(std::size_t)>& values_of) {
   for (const std::vector<double>& of_flight : share.of_each_flight<std::vector<double>>(values_of)) {
-    std::copy_if(of_flight.begin(), of_flight.end(), std::back_inserter(values_),
+    std::copy_if(of_flight.begin(), of_flight.end(), std::back_inserter(values),
                  [](double value) { return std::isfinite(value); });
-    missing_ += of_flight.size();
+    missing += of_flight.size();
   }
-  missing_ -= values_.size();
-  if (values_.empty()) return;
-  const auto [least, greatest] = std::minmax_element(values_.begin(), values_.end());
-  minimum_ = *least;
-  maximum_ = *greatest;
-  const auto count = static_cast<double>(values_.size());
-  mean_ = std::accumulate(values_.begin(), values_.end(), 0.0) / count;
+  missing -= values.size();
+  if (values.empty()) return;
+  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+  minimum = *least;
+  maximum = *greatest;
+  const auto count = static_cast<double>(values.size());
+  mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
   double squares = 0.0;
-  for (const double value : values_) squares += (value - mean_) * (value - mean_);
-  deviation_ = std::sqrt(squares / count);
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  deviation = std::sqrt(squares / count);
 }
 
-std::vector<double> VariableValues::distinct(std::size_t maximum) const {
+std::vector<double> VariableValues::distinct(std::size_t most) const {
   std::set<double> found;
-  for (std::size_t i = 0; i < values_.size() && found.size() <= maximum; ++i) found.insert(values_[i]);
+  for (std::size_t i = 0; i < values.size() && found.size() <= most; ++i) found.insert(values[i]);
   return {found.begin(), found.end()};
 }
 
 std::vector<double> VariableValues::quantiles(std::size_t number) const {
-  std::vector<double> values = values_;
+  std::vector<double> rest = values;
   std::vector<double> found;
-  auto begin = values.begin();
+  auto begin = rest.begin();
   for (std::size_t k = 0; k < number; ++k) {
     const double part = static_cast<double>(k) / static_cast<double>(number - 1);
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(count() - 1));
-    std::nth_element(begin, place, values.end());
+    const auto place =
+        rest.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    std::nth_element(begin, place, rest.end());
     found.push_back(*place);
     begin = place;
   }
@@ -62,11 +63,11 @@ std::vector<double> VariableValues::quantiles(std::size_t number) const {
 }
 
 bool Smooth::describe(const VariableValues& values) {
-  if (values.count() < 3) return false;
-  centre_ = values.mean();
-  deviation_ = values.deviation();
+  if (values.values.size() < 3) return false;
+  centre_ = values.mean;
+  deviation_ = values.deviation;
   // Variation in the last digits only is ignored.
-  return deviation_ > 1e-9 * std::max(std::abs(values.minimum()), std::abs(values.maximum()));
+  return deviation_ > 1e-9 * std::max(std::abs(values.minimum), std::abs(values.maximum));
 }
 
 Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t columns) {
@@ -99,8 +100,8 @@ Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns
   smooth.columns_ = columns;
   // First and last spline are omitted: the straight line replaces one, and the sum of all would be a
   // constant.
-  smooth.distance_ = (values.maximum() - values.minimum()) / static_cast<double>(columns - 1);
-  smooth.first_ = values.minimum();
+  smooth.distance_ = (values.maximum - values.minimum) / static_cast<double>(columns - 1);
+  smooth.first_ = values.minimum;
   return smooth;
 }
 

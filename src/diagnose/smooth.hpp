@@ -10,33 +10,24 @@ namespace pcor::internal {
 
 /// Finite values of a variable on all flights of a team, of which every member holds all, 8 bytes each.
 /// Results do not depend on the distribution of flights.
-class VariableValues {
- public:
+struct VariableValues {
   /// @param values_of values of a local flight; values that are not finite are missing
   VariableValues(const FlightPartition& share,
                  const std::function<std::vector<double>(std::size_t flight)>& values_of);
 
-  std::size_t count() const { return values_.size(); }
-  std::size_t missing() const { return missing_; }
-  // The following are zero without a value.
-  double minimum() const { return minimum_; }
-  double maximum() const { return maximum_; }
-  double mean() const { return mean_; }
-  double deviation() const { return deviation_; }  ///< standard deviation
-
-  /// Distinct values, ascending; if there are more than `maximum`, an incomplete list of more than `maximum`.
-  std::vector<double> distinct(std::size_t maximum) const;
+  /// Distinct values, ascending; if there are more than `most`, an incomplete list of more than `most`.
+  std::vector<double> distinct(std::size_t most) const;
 
   /// Quantiles at equidistant ranks, including minimum and maximum.
   std::vector<double> quantiles(std::size_t number) const;
 
- private:
-  std::vector<double> values_{};  // values in the order of the flights
-  std::size_t missing_ = 0;
-  double minimum_ = 0.0;
-  double maximum_ = 0.0;
-  double mean_ = 0.0;
-  double deviation_ = 0.0;
+  std::vector<double> values{};  ///< in the order of the flights
+  std::size_t missing = 0;
+  // The following are zero without a value.
+  double minimum = 0.0;
+  double maximum = 0.0;
+  double mean = 0.0;
+  double deviation = 0.0;  ///< standard deviation
 };
 
 /// Functions of one variable that together describe any smooth dependence on it, without a constant.

@@ -133,8 +133,8 @@ bool StructureTest::add(const TestedVariable& variable) {
     for (const std::size_t record : bins_[f].records()) of_flight.push_back((*variable.values[f])[record]);
     return of_flight;
   });
-  const auto missing = static_cast<double>(known.missing());
-  if (missing > max_missing * (missing + static_cast<double>(known.count()))) return false;
+  const auto missing = static_cast<double>(known.missing);
+  if (missing > max_missing * (missing + static_cast<double>(known.values.size()))) return false;
   const std::size_t before = structures_.size();
   const std::size_t maximum = rows_ / bins_per_column;
   add(variable, variable.turn > 0.0
