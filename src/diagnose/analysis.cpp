@@ -33,12 +33,11 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
                                             static_cast<double>(held_out_parts)));
 }
 
-Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
+Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups,
                    const std::vector<Eigen::VectorXd>& added, Eigen::VectorXd prior)
     : share_(columns.share),
       first_share_(columns.share),  // replaced below, where the flights against the first reference are known
       groups_(std::move(groups)),
-      seed_(seed),
       prior_(std::move(prior)) {
   base_ = columns.flights.front().base.cols();
   if (prior_.size() == 0) prior_ = Eigen::VectorXd::Zero(base_);
@@ -83,8 +82,8 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
     find_noise(chosen, found, round == 0);
     find_search(chosen);
     SearchOptions options;
-    options.seed = seed_;
-    for (std::size_t f = 0; f < flight_count(); ++f) options.references.push_back(flight(f).reference);
+    options.seed = random_seed;
+    options.references = binned_.reference;
     if (round == 0) {
       options.threshold = generous_threshold;
       options.max_effects = generous_effects;

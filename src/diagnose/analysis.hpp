@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -45,7 +44,7 @@ class Analysis {
   /// @param added coefficients of the base of effects of the flow that were found before and are in the model
   /// now, one vector for each effect
   /// @param prior inverse prior variances of the coefficients of the base about the model; empty: none
-  Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed,
+  Analysis(TeamColumns columns, std::vector<ColumnGroup> groups,
            const std::vector<Eigen::VectorXd>& added = {}, Eigen::VectorXd prior = {});
 
   /// Partition of the flights against the first reference.
@@ -154,7 +153,6 @@ class Analysis {
   std::vector<FlightColumns> flights_{};
   std::vector<FlightColumns> further_{};  // against references after the first
   std::vector<ColumnGroup> groups_;
-  std::uint64_t seed_;
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
   std::vector<NoiseModel> noise_{};

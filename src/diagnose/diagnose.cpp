@@ -266,8 +266,8 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
       std::count_if(set.candidates.begin(), set.candidates.end(),
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
-  const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
-                          added_of(model, set.base), prior_of(references, set.base));
+  const Analysis analysis(std::move(columns), groups_of(set, set.candidates), added_of(model, set.base),
+                          prior_of(references, set.base));
   diagnosis.threshold = analysis.result().threshold;
   diagnosis.findings = findings_of(analysis, references, set.candidates);
   found = diagnosis.findings;
@@ -286,7 +286,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
   const double left = add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
   if (!flaps.candidates.empty())
-    diagnose_flaps(analysis, references, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
+    diagnose_flaps(analysis, references, flaps, groups_of(set, flaps.candidates), diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;

@@ -95,8 +95,8 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
 }
 
 void diagnose_flaps(const Analysis& analysis, const References& references, const FlapsCandidates& flaps,
-                    std::vector<ColumnGroup> groups, std::uint64_t seed, Diagnosis& diagnosis) {
-  const Analysis test(flights_of(analysis, flaps), std::move(groups), seed);
+                    std::vector<ColumnGroup> groups, Diagnosis& diagnosis) {
+  const Analysis test(flights_of(analysis, flaps), std::move(groups));
   const std::vector<std::size_t>& chosen = test.result().chosen;
   const std::vector<Finding> findings = findings_of(test, references, flaps.candidates);
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(test);

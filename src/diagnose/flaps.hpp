@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <cstdint>
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
@@ -24,6 +23,6 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
 /// Tests them together with the model and the findings of `analysis`, and adds the result or its upper limit
 /// to the diagnosis. @param groups of the columns of `flaps`
 void diagnose_flaps(const Analysis& analysis, const References& references, const FlapsCandidates& flaps,
-                    std::vector<ColumnGroup> groups, std::uint64_t seed, Diagnosis& diagnosis);
+                    std::vector<ColumnGroup> groups, Diagnosis& diagnosis);
 
 }  // namespace pcor::internal

@@ -49,6 +49,9 @@ std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
 double distinct_squares(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
                         const std::vector<Eigen::Index>& own, const Eigen::VectorXd& coefficients);
 
+/// Seed of the random draws of a diagnosis, which set its thresholds.
+inline constexpr std::uint64_t random_seed = 20120106;
+
 struct SearchOptions {
   std::size_t draws = 4000;
   double confidence = 0.997;          ///< probability of no finding if there is no effect

@@ -116,9 +116,9 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
 
 /// Structure of variables in addition to some effects. @param aside see `StructureTest`
 StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_t>& chosen,
-                          const std::vector<TestedVariable>& variables, std::uint64_t seed,
+                          const std::vector<TestedVariable>& variables,
                           const std::vector<Eigen::MatrixXd>& aside = {}) {
-  StructureTest test(analysis.share(), analysis.binned(chosen), analysis.noise(), seed, aside);
+  StructureTest test(analysis.share(), analysis.binned(chosen), analysis.noise(), random_seed, aside);
   for (const TestedVariable& variable : variables) test.add(variable);
   return test;
 }
@@ -126,10 +126,10 @@ StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_
 /// Moves variables whose changes are correlated with those of the residual to `variables` if they may be its
 /// cause, otherwise to the list in `found`.
 void sort_correlated(const Analysis& analysis,
-                     std::vector<std::pair<TestedVariable, ChangeSlope>>& correlated, std::uint64_t seed,
+                     std::vector<std::pair<TestedVariable, ChangeSlope>>& correlated,
                      std::vector<TestedVariable>& variables, Unexplained& found) {
   if (correlated.empty()) return;
-  StructureTest test = test_beside(analysis, analysis.result().chosen, {}, seed);
+  StructureTest test = test_beside(analysis, analysis.result().chosen, {});
   for (auto& [variable, slope] : correlated) {
     if (test.add(variable) && slope.agrees_with(test.structures().back())) {
       variables.push_back(std::move(variable));
@@ -166,7 +166,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
       variables.push_back(std::move(variable));
     }
   }
-  sort_correlated(analysis, correlated, options.seed, variables, found);
+  sort_correlated(analysis, correlated, variables, found);
   return variables;
 }
 
@@ -181,12 +181,12 @@ bool explains_most_beyond_chance(const StructureTest& test) {
 
 /// Structure of all variables in addition to some effects.
 StructureTest test_all(const Analysis& analysis, const std::vector<std::size_t>& chosen,
-                       const std::vector<TestedVariable>& variables, std::uint64_t seed) {
-  StructureTest test = test_beside(analysis, chosen, variables, seed);
+                       const std::vector<TestedVariable>& variables) {
+  StructureTest test = test_beside(analysis, chosen, variables);
   const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
   if (strong.empty() || explains_most_beyond_chance(test)) return test;
   // The chance level may be too high only because its residuals contain that structure.
-  return test_beside(analysis, chosen, variables, seed, strong);
+  return test_beside(analysis, chosen, variables, strong);
 }
 
 /// Variable minus its middle at every record; missing values repeat the previous one.
@@ -468,7 +468,7 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
   const std::vector<TestedVariable> variables =
       variables_to_test(analysis, files, model, first_of(references), options, after, found);
 
-  StructureTest tested = test_all(analysis, chosen, variables, options.seed);
+  StructureTest tested = test_all(analysis, chosen, variables);
   const double by_variables = tested.p_value();
   double left = 0.0;
   for (const Structure& structure : tested.structures()) {
@@ -478,7 +478,7 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
   if (!chosen.empty())
     line = best_line(analysis, chosen, tested, effect_inputs(diagnosis.findings, extended));
   const bool overrules = line.log_odds > sure;
-  if (overrules) tested = test_all(analysis, {}, variables, options.seed);
+  if (overrules) tested = test_all(analysis, {}, variables);
 
   const auto rms_of_flights = [&](std::vector<double> FlightDiagnosis::*series) {
     return rms_of(

@@ -56,7 +56,7 @@ std::map<std::string, double> gains(const std::filesystem::path& path, bool with
   TeamColumns columns = columns_of_flights(flights, 1, law(), set, {}, notes);
   leave_out_empty(columns);
   drop_untestable(set, columns);
-  const Analysis analysis(std::move(columns), groups_of(set, set.candidates), 1);
+  const Analysis analysis(std::move(columns), groups_of(set, set.candidates));
   std::map<std::string, double> result;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     const std::string& id = set.candidates[c].id;

@@ -9,7 +9,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -44,7 +43,6 @@ struct DiagnoseOptions {
   double training_share = 1.0;               ///< fraction of each flight used, from its start, 0 to 1
   /// True: references are exact; no effect of a laser or of another system is tested.
   bool trust_reference = false;
-  std::uint64_t seed = 20120106;  ///< seed of the random draws that set thresholds
   /// Callback after every flight of this rank.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
