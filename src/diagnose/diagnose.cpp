@@ -16,7 +16,6 @@
 #include "diagnose/findings.hpp"
 #include "diagnose/flaps.hpp"
 #include "diagnose/flight_columns.hpp"
-#include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/shape_uncertainty.hpp"
 #include "diagnose/step_dates.hpp"

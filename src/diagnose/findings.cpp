@@ -12,7 +12,6 @@
 #include <pcor/effects/catalogue.hpp>
 #include "campaign/gps_rows.hpp"
 #include "diagnose/finding_page.hpp"
-#include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/separation.hpp"
 #include "numerics/decompositions.hpp"

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/packed_diagnosis.hpp"
 #include "parallel/packed.hpp"
+#include "residuals/packed_residuals.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"

@@ -72,6 +72,11 @@ struct Evidence {
   double end = 0.0;     ///< s since 1970 UTC
   std::string regimes;  ///< e.g. "level, yaw manoeuvre"
   double share = 0.0;   ///< fraction of all evidence for the effect, 0 to 1
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(flight, begin, end, regimes, share);
+  }
 };
 
 template <class Field>
@@ -395,6 +400,12 @@ struct FlightDiagnosis {
   std::vector<double> mach;
   std::vector<double> attack;    ///< deg; NaN if unknown
   std::vector<double> sideslip;  ///< deg; NaN if unknown
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(number, name, samples, before, after, added, evidence, drift, traced, static_pressure, mach,
+            attack, sideslip);
+  }
 };
 
 /// Recorded variable with which the residual is correlated, and which seems to be a role that the model does
