@@ -12,7 +12,6 @@
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include "diagnose/finding_page.hpp"
-#include "diagnose/findings.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
 #include "improve/rival_choice.hpp"
@@ -112,6 +111,7 @@ class ForwardSelection {
     choose_among_rivals();
     add_surface();
     compare_with_the_given();
+    result_.model = std::move(delivered_.file);
     for (const auto& [id, refusal] : refused_) notes_.push_back(refusal);
     result_.fit.notes.insert(result_.fit.notes.end(), notes_.begin(), notes_.end());
     return std::move(result_);
@@ -144,10 +144,10 @@ class ForwardSelection {
       if (alternatives_[index].size() < 2) continue;
       choices[index] = choice_of(index, result_.steps[index + 1]);
     }
-    TrialModel delivered = top();
+    delivered_ = top();
     if (choices != first_of_each) {
       try {
-        delivered = model_with(choices);
+        delivered_ = model_with(choices);
       } catch (const Error& error) {  // single choices may not be fittable together
         for (std::size_t index = 0; index < alternatives_.size(); ++index) {
           ImproveStep& step = result_.steps[index + 1];
@@ -160,9 +160,7 @@ class ForwardSelection {
             error.what()));
       }
     }
-    result_.model = std::move(delivered.file);
-    delivered_alike_ = std::move(delivered.alike);
-    add_rival_error(result_.model);
+    add_rival_error(delivered_.file);
   }
 
   /// States the expected error of the choice among rivals, and the rivals, in a model.
@@ -233,14 +231,13 @@ class ForwardSelection {
   /// reduces the residual of samples outside its fit by more than chance.
   void add_surface() {
     if (!loop_.offer_surface || !surface_may_describe(diagnosis())) return;
-    const TrialModel before{result_.model, delivered_alike_};
     const EffectInfo& surface = surface_info.front();
     const std::string id(surface.id);
     std::optional<SurfaceOffer> offer;
     std::string figures;
     RefitResult fit;
     try {
-      offer = loop_.offer_surface(before);
+      offer = loop_.offer_surface(delivered_);
       if (!offer) return;
       const TrialComparison& compared = offer->compared;
       figures = fmt::format("rms {} with it, {} without it on {}", shown(compared.rms_after),
@@ -259,7 +256,7 @@ class ForwardSelection {
     ImproveStep step;
     step.added = step.delivered = id;
     step.title = std::string(surface.title);
-    measure(step, fit, before.alike);
+    measure(step, fit, delivered_.alike);
     // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
       step.rms_holdout =
@@ -274,17 +271,16 @@ class ForwardSelection {
         id, degrees, figures, offer->compared.gain, offer->compared.gain_error);
     // The uncertainty of the choice among rivals stays part of the stated error.
     add_rival_error(fit.model);
-    result_.model = fit.model;
-    take(std::move(step), std::move(fit), {}, before.alike);
+    delivered_.file = fit.model;
+    take(std::move(step), std::move(fit), {}, delivered_.alike);
   }
 
   /// Compares the delivered model with the input model.
   void compare_with_the_given() {
-    std::vector<TrialFlight> tried =
-        loop_.try_models({given_, {result_.refitted}, {result_.model, delivered_alike_}, top()});
+    std::vector<TrialFlight> tried = loop_.try_models({given_, {result_.refitted}, delivered_, top()});
     const TrialComparison train = comparison_of(tried, 0, 2, false);
     const TrialComparison holdout = comparison_of(tried, 0, 2, true);
-    if (result_.model.law.rms_hpa) result_.model.law.rms_hpa = train.rms_after;
+    if (delivered_.file.law.rms_hpa) delivered_.file.law.rms_hpa = train.rms_after;
     result_.given_rms_train = train.rms_before;
     result_.rms_train = train.rms_after;
     result_.given_rms_holdout = holdout.rms_before;
@@ -543,7 +539,7 @@ class ForwardSelection {
   Improvement result_;
   TrialModel given_;
   std::vector<std::string> alike_{};  // `TrialModel::alike` of the model after the last step
-  std::vector<std::string> delivered_alike_{};
+  TrialModel delivered_{};            // the model to write, with the rivals that were chosen
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
   std::vector<double> error_of_first_{};          // hPa, of each of them, if the first rival is applied
