@@ -31,7 +31,7 @@ Exclusion block_of(const TrialFlight& flight, std::size_t block) {
 
 /// The residuals without and with the surface on five blocks, each with coefficients of the other four.
 /// @param outline the samples of all blocks
-/// @param surfaces the priors in a fit to all blocks, where the search for those of each block starts
+/// @param surfaces the priors in a fit to all blocks, whose inflation is that of each block
 TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
                               const RefitOptions& options, const std::vector<TrialFlight>& outline,
                               std::vector<SurfaceRoughness> surfaces) {
