@@ -9,11 +9,10 @@
 #include <map>
 #include <string>
 
+#include "support/data.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor::test {
-
-inline const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
 inline std::string scenario_text(const std::string& scenario) {
   std::ifstream file(scenarios / (scenario + ".toml"));
