@@ -13,6 +13,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/realtime/loop.hpp>
 #include "batch/batch_kernel.hpp"
+#include "numerics/missing.hpp"
 #include "support/error_of.hpp"
 
 using namespace pcor::internal;
@@ -20,7 +21,7 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using internal::nan;
 
 /// Recorded values, an array for each quantity.
 using Arrays = std::map<Quantity, std::vector<double>>;

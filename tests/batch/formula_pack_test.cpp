@@ -3,19 +3,20 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <type_traits>
 #include <vector>
 #include <xsimd/xsimd.hpp>
 
 #include <pcor/model/formula.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor {
 namespace {
 
-using Pack = xsimd::batch<double>;
+using internal::nan;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using XsimdBatch = xsimd::batch<double>;
+
 constexpr double parameters[] = {0.8, -1.3};
 constexpr double samples[] = {0.3, -0.7, 0.0, 2.5, nan, 1.0, -2.0, 17.0, 1e-3, 0.5, -0.31, 4.0};
 
@@ -26,17 +27,18 @@ void expect_lanes_as_scalars(const char* text, double tolerance) {
   ASSERT_LE(formula->variables().size(), 2U);
   constexpr std::size_t count = std::size(samples);
   for (std::size_t begin = 0; begin < count; ++begin) {
-    std::array<std::array<double, Pack::size>, 2> lanes;
-    for (std::size_t lane = 0; lane < Pack::size; ++lane) {
+    std::array<std::array<double, XsimdBatch::size>, 2> lanes;
+    for (std::size_t lane = 0; lane < XsimdBatch::size; ++lane) {
       lanes[0][lane] = samples[(begin + lane) % count];
       lanes[1][lane] = samples[(2 * begin + 5 * lane + 3) % count];
     }
-    const Pack variables[] = {Pack::load_unaligned(lanes[0].data()), Pack::load_unaligned(lanes[1].data())};
+    const XsimdBatch variables[] = {XsimdBatch::load_unaligned(lanes[0].data()),
+                                    XsimdBatch::load_unaligned(lanes[1].data())};
     const auto pack = formula->value(variables, parameters);
-    static_assert(std::is_same_v<decltype(pack), const Pack>);
-    std::array<double, Pack::size> values;
+    static_assert(std::is_same_v<decltype(pack), const XsimdBatch>);
+    std::array<double, XsimdBatch::size> values;
     pack.store_unaligned(values.data());
-    for (std::size_t lane = 0; lane < Pack::size; ++lane) {
+    for (std::size_t lane = 0; lane < XsimdBatch::size; ++lane) {
       const double alone[] = {lanes[0][lane], lanes[1][lane]};
       const double expected = formula->value(alone, parameters);
       if (std::isnan(expected)) {
@@ -70,8 +72,8 @@ TEST(FormulaPack, LanesAgreeWithScalarsWithinRoundingForFunctions) {
 TEST(FormulaPack, ParametersCanBePacks) {
   const auto formula = Formula::parse("k * x^2", {"k"});
   ASSERT_TRUE(formula);
-  const Pack x(3.0), k(2.0);
-  std::array<double, Pack::size> values;
+  const XsimdBatch x(3.0), k(2.0);
+  std::array<double, XsimdBatch::size> values;
   formula->value(&x, &k).store_unaligned(values.data());
   for (const double value : values) EXPECT_EQ(value, 18.0);
 }

@@ -6,19 +6,20 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include "numerics/missing.hpp"
 
 using namespace pcor::internal;
 
 namespace pcor {
 namespace {
 
+using internal::infinity;
+using internal::nan;
 using testing::IsNan;
 
 using TestPack = Pack<xsimd::default_arch>;
 using Values = std::array<double, TestPack::size>;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double last_place = std::numeric_limits<double>::epsilon();
 
 TestPack pack(double value) { return TestPack(value); }
