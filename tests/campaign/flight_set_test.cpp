@@ -16,12 +16,12 @@
 
 namespace fs = std::filesystem;
 
-using namespace pcor;
-using pcor::test::error_of;
-using pcor::test::IsError;
-using pcor::test::NetcdfMaker;
-
+namespace pcor {
 namespace {
+
+using test::error_of;
+using test::IsError;
+using test::NetcdfMaker;
 
 void make(const fs::path& path, const std::vector<double>& seconds = {0, 1, 2}) {
   NetcdfMaker maker(path);
@@ -173,3 +173,4 @@ TEST_F(FlightSets, SamplesContainTheQuantitiesOfTheDomain) {
 }
 
 }  // namespace
+}  // namespace pcor

@@ -34,8 +34,6 @@ class GpsRowsOfCircles : public testing::Test {
   pcor::test::TemporaryDirectory directory_;
 };
 
-}  // namespace
-
 // The model takes dry air where the humidity is missing, and the airspeed jumps.
 TEST_F(GpsRowsOfCircles, SamplesWithoutTheRecordedHumidityHaveNoRow) {
   for (const auto& reference : {pcor::wind_reference(model), pcor::height_reference(model)}) {
@@ -102,3 +100,5 @@ TEST_F(GpsRowsOfCircles, GapInTheGpsHeightIsNotAJumpOfTheHeight) {
     for (std::size_t i = middle - 60; i < middle + 60; ++i) EXPECT_NEAR(with_gap[i], complete[i], 20.0) << i;
   }
 }
+
+}  // namespace

@@ -68,7 +68,7 @@ Eigen::MatrixXd at_used(const LinearRows& rows, const std::vector<double>& param
 }
 
 /// Compares derivatives of residuals with centred differences of them.
-void expect_differences(const LinearRows& rows) {
+void expect_derivatives(const LinearRows& rows) {
   const std::vector<double> start = rows.residuals().parameters();
   const std::vector<std::size_t> all = all_parameters(rows);
   const Eigen::MatrixXd found = at_used(rows, start, all);
@@ -94,7 +94,7 @@ TEST(LinearRows, DerivativesAreDifferencesOfResiduals) {
   for (const ModelDefinition& model : {laser_model(), curved_model()}) {
     const LinearRows rows = rows_of(model, *lams);
     EXPECT_EQ(rows.is_linear(), model.model.effects.size() == 3);
-    expect_differences(rows);
+    expect_derivatives(rows);
   }
 }
 
