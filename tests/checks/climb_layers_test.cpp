@@ -17,6 +17,8 @@
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/simulate/simulate.hpp>
+#include "numerics/missing.hpp"
+#include "support/data.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -25,12 +27,11 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
+using internal::nan;
+using test::scenarios;
 using test::standard_air;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
 
 // The thermometer of the simulated flights, on the recovery temperature: 0.55 K and 0.01 of the temperature
 // in degC too warm. In ambient temperature that is less by 1 + 0.2 r M^2, with r = 0.95 and a Mach number of
@@ -41,7 +42,7 @@ double ambient_share(double mach) { return 1.0 / (1.0 + 0.2 * 0.95 * mach * mach
 
 /// A flight of the C-130 of an hour: two climbs and two descents, level legs, over isobars that slope by 10 m
 /// per 100 km to the east.
-FlightAir fly(int seed, double heading) {
+FlightAir simulated_air(int seed, double heading) {
   const std::string text = R"(
 format = "pcor-scenario/1"
 name = "layers"
@@ -92,14 +93,14 @@ duration = 60
   const test::TemporaryDirectory directory;
   simulate_flight(parse_scenario(text, "layers.toml"), directory / "flight.nc");
   return read_flight_air({directory / "flight.nc"}, 0,
-                         read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"));
+                         read_model(scenarios / "models" / "c130-psfd-eq18.toml"));
 }
 
 /// Eight flights into all directions, simulated once.
 const std::vector<FlightAir>& flights() {
   static const std::vector<FlightAir> all = [] {
     std::vector<FlightAir> flown;
-    for (int seed = 1; seed <= 8; ++seed) flown.push_back(fly(seed, 45.0 * seed));
+    for (int seed = 1; seed <= 8; ++seed) flown.push_back(simulated_air(seed, 45.0 * seed));
     return flown;
   }();
   return all;
@@ -217,7 +218,7 @@ TEST(Layers, EndAtGapsMissingValuesAndHeightSteps) {
   };
   ASSERT_THAT(layers_of(whole), SizeIs(1));
   FlightAir missing = whole;
-  missing.temperature[240] = nan_value;
+  missing.temperature[240] = nan;
   EXPECT_THAT(layers_of(missing), SizeIs(2));
   FlightAir gap = whole;
   auto samples = std::make_shared<FlightSamples>(*whole.samples);
@@ -450,7 +451,7 @@ TEST(LayerFit, FindsALineAndItsErrors) {
 TEST(LayerFit, SharedEndsOfLayersAreCorrelated) {
   // Three layers of a climb: the height between them drops out of the mean of the whole.
   const FlightAir air = standard_air(climb(1000.0, 4000.0, 5.0));
-  LayerOptions options = noise_and_gradient(nan_value, 0.0);
+  LayerOptions options = noise_and_gradient(nan, 0.0);
   FlightLayers cut = find_layers(air, options);
   ASSERT_THAT(cut.layers, SizeIs(3));
   options.thickness = 1e4;

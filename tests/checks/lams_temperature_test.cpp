@@ -9,6 +9,7 @@
 
 #include <pcor/simulate/simulate.hpp>
 #include "checks/checks.hpp"
+#include "support/data.hpp"
 #include "support/says.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -17,12 +18,11 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
+using test::scenarios;
 using testing::Contains;
 using testing::HasSubstr;
 
-const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
-
-CheckedFlights fly(const std::string& more, bool with_laser = true) {
+CheckedFlights one_flight(const std::string& more, bool with_laser = true) {
   const std::string text = R"(
 format = "pcor-scenario/1"
 name = "laser"
@@ -49,20 +49,20 @@ duration = 5400
 )" + more;
   const test::TemporaryDirectory directory;
   simulate_flight(parse_scenario(text, "laser.toml"), directory / "flight.nc");
-  ModelDefinition model = read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   if (!with_laser) model.variables.erase(Quantity::lams_airspeed);
   CheckedFlights flights(1);
   flights[0].air = read_flight_air({directory / "flight.nc"}, 0, model);
   return flights;
 }
 
-const std::string too_warm = "[[effect]]\nid = \"temp-offset\"\noffset = 1.5\n";
+const std::string warm_thermometer = "[[effect]]\nid = \"temp-offset\"\noffset = 1.5\n";
 const std::string cloud =
     "[[atmosphere.cloud]]\nbase = 2500\ntop = 3500\ncover = 0.4\n"
     "[[effect]]\nid = \"temp-wetting\"\nerror = -2.0\n";
 
 TEST(LamsTemperatureCheck, AgreesWithoutErrors) {
-  const CheckResult result = check_lams_temperature(fly(""));
+  const CheckResult result = check_lams_temperature(one_flight(""));
   ASSERT_TRUE(result.ran) << result.reason;
   EXPECT_NEAR(result.number("offset_k"), 0.0, 3.0 * result.number("offset_stderr_k"));
   EXPECT_EQ(result.verdict, CheckVerdict::consistent);
@@ -70,7 +70,7 @@ TEST(LamsTemperatureCheck, AgreesWithoutErrors) {
 }
 
 TEST(LamsTemperatureCheck, DetectsAWarmThermometer) {
-  const CheckResult result = check_lams_temperature(fly(too_warm));
+  const CheckResult result = check_lams_temperature(one_flight(warm_thermometer));
   ASSERT_TRUE(result.ran);
   // 1.5 K of recovery temperature are 1.5/(1 + 0.2 r M^2) K of ambient, with M = 0.33.
   EXPECT_NEAR(result.number("offset_k"), -1.47, 3.0 * result.number("offset_stderr_k") + 0.01);
@@ -78,7 +78,7 @@ TEST(LamsTemperatureCheck, DetectsAWarmThermometer) {
 }
 
 TEST(LamsTemperatureCheck, CloudSamplesHaveASeparateOffset) {
-  const CheckResult result = check_lams_temperature(fly(cloud));
+  const CheckResult result = check_lams_temperature(one_flight(cloud));
   ASSERT_TRUE(result.ran);
   // A thermometer that reads 2 K low when wet, and dries within 10 s.
   EXPECT_GT(result.number("cloud_offset_k"), 1.2);
@@ -87,7 +87,7 @@ TEST(LamsTemperatureCheck, CloudSamplesHaveASeparateOffset) {
 }
 
 TEST(LamsTemperatureCheck, NoiseIsLargerInTheBoundaryLayer) {
-  const CheckResult result = check_lams_temperature(fly(""));
+  const CheckResult result = check_lams_temperature(one_flight(""));
   for (const ReportTable& table : result.tables) {
     if (table.title != "Noise of the difference by period: numbers") continue;
     ASSERT_FALSE(table.rows.empty());
@@ -100,7 +100,7 @@ TEST(LamsTemperatureCheck, NoiseIsLargerInTheBoundaryLayer) {
 }
 
 TEST(LamsTemperatureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
-  CheckedFlights flights = fly("");
+  CheckedFlights flights = one_flight("");
   const CheckResult alone = check_lams_temperature(flights);
   const CheckedFlight same = flights[0];
   flights.push_back(same);
@@ -114,7 +114,7 @@ TEST(LamsTemperatureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
 }
 
 TEST(LamsTemperatureCheck, IsNotRunWithoutALaser) {
-  const CheckResult result = check_lams_temperature(fly("", false));
+  const CheckResult result = check_lams_temperature(one_flight("", false));
   EXPECT_FALSE(result.ran);
   EXPECT_THAT(result.reason, HasSubstr("laser"));
 }

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "checks/checks.hpp"
 #include "checks/standard_air.hpp"
+#include "numerics/missing.hpp"
 #include "support/says.hpp"
 
 using namespace pcor::internal;
@@ -17,12 +17,11 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
+using internal::nan;
 using testing::HasSubstr;
 
-constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
-
 /// A climb and a descent in the standard atmosphere, with a thermometer that is too warm.
-CheckedFlight made(double too_warm) {
+CheckedFlight climb_and_descent(double too_warm) {
   CheckedFlight flight;
   std::vector<double> heights;
   for (int i = 0; i <= 1600; ++i) heights.push_back(1000.0 + 5.0 * std::min(i, 1600 - i));
@@ -31,7 +30,7 @@ CheckedFlight made(double too_warm) {
 }
 
 TEST(LayersCheck, CorrectThermometerPasses) {
-  const CheckResult result = check_layers({made(0.0)});
+  const CheckResult result = check_layers({climb_and_descent(0.0)});
   ASSERT_TRUE(result.ran) << result.reason;
   // One flight, with the usual errors of delta-p, does not detect 0.3 K at two standard errors.
   EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
@@ -41,7 +40,7 @@ TEST(LayersCheck, CorrectThermometerPasses) {
 }
 
 TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
-  const CheckResult result = check_layers({made(2.0)});
+  const CheckResult result = check_layers({climb_and_descent(2.0)});
   ASSERT_TRUE(result.ran);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
   EXPECT_NEAR(result.number("offset_k"), -2.0, 0.01);
@@ -49,35 +48,35 @@ TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
 }
 
 TEST(LayersCheck, ReasonForNoResultIsReported) {
-  CheckedFlight feet = made(0.0);
+  CheckedFlight feet = climb_and_descent(0.0);
   feet.air.height_scale_problem = "heights in feet";
   EXPECT_THAT(check_layers({feet}).reason, HasSubstr("heights in feet"));
-  CheckedFlight without = made(0.0);
+  CheckedFlight without = climb_and_descent(0.0);
   without.air.height.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("no unit"));
   without.air.height_variable.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("GPS height"));
-  without = made(0.0);
+  without = climb_and_descent(0.0);
   without.air.latitude.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("latitude"));
-  without = made(0.0);
+  without = climb_and_descent(0.0);
   without.air.temperature.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("thermometer"));
-  CheckedFlight level = made(0.0);
+  CheckedFlight level = climb_and_descent(0.0);
   for (std::size_t i = 0; i < level.air.size(); ++i) {
     level.air.height[i] = level.air.geopotential_height[i] = level.air.pressure_altitude[i] = 3000.0;
     level.air.pressure[i] = standard_pressure(3000.0);
   }
   EXPECT_THAT(check_layers({level}).reason, HasSubstr("no climb"));
-  CheckedFlight dropouts = made(0.0);
-  for (std::size_t i = 0; i < dropouts.air.size(); i += 50) dropouts.air.geopotential_height[i] = nan_value;
+  CheckedFlight dropouts = climb_and_descent(0.0);
+  for (std::size_t i = 0; i < dropouts.air.size(); i += 50) dropouts.air.geopotential_height[i] = nan;
   EXPECT_THAT(check_layers({dropouts}).reason, HasSubstr("gap"));
 }
 
 TEST(LayersCheck, FlightWithoutHeightIsSkippedAndReported) {
-  CheckedFlight without = made(0.0);
+  CheckedFlight without = climb_and_descent(0.0);
   without.air.height.clear();
-  const CheckResult result = check_layers({without, made(0.0)});
+  const CheckResult result = check_layers({without, climb_and_descent(0.0)});
   ASSERT_TRUE(result.ran);
   EXPECT_THAT(result.notes, testing::Contains(test::Says("GPS height")));
   // Pictures have a value for every record of all flights.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <pcor/physics/air_data.hpp>
+#include <pcor/physics/constants.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/regimes/regimes.hpp>
 
@@ -17,7 +18,7 @@ using namespace pcor::internal;
 namespace pcor {
 namespace {
 
-constexpr double radians = 3.14159265358979323846 / 180.0;
+using constants::radians_per_degree;
 
 /// A row of the memo's table of reverse headings on flight 5 of IDEAS-4.
 struct Row {
@@ -110,8 +111,8 @@ TEST(LegPair, FirstLegOfTheMemoNeedsCorrectedTime) {
 
 /// A leg in a wind, m/s, with an airspeed that is too high.
 LegMean flown(double heading, double east, double north, double too_high) {
-  const double sine = std::sin(heading * radians);
-  const double cosine = std::cos(heading * radians);
+  const double sine = std::sin(heading * radians_per_degree);
+  const double cosine = std::cos(heading * radians_per_degree);
   LegMean leg = leg_of(heading, {east * sine + north * cosine - too_high, 0.1});
   leg.cross_speed = east * cosine - north * sine;
   return leg;
@@ -138,7 +139,7 @@ TEST(LegPair, HeadingErrorIsCorrectedForWind) {
   EXPECT_NEAR(pair.heading_error, 6.0, 1e-9);
   EXPECT_GT(std::abs(pair.heading_share), 0.5);  // a cross wind of 10.7 m/s through 6 deg is 1.1 m/s
   // Remainder: effect of the airspeed's error on the wind, 0.8 m/s through half of 6 deg squared.
-  EXPECT_NEAR(pair.airspeed_error.value, 0.8, 0.8 * std::pow(6.0 * radians, 2));
+  EXPECT_NEAR(pair.airspeed_error.value, 0.8, 0.8 * std::pow(6.0 * radians_per_degree, 2));
 }
 
 TEST(LegPair, SensitivityAgreesWithAirDataEquations) {

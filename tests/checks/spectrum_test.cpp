@@ -18,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-CheckedFlight made(std::vector<double> defect, double step = 1.0) {
+CheckedFlight with_defect(std::vector<double> defect, double step = 1.0) {
   CheckedFlight flight;
   FlightAir& air = flight.air;
   auto samples = std::make_shared<FlightSamples>();
@@ -46,7 +46,7 @@ std::vector<double> white(std::size_t count, double rms, unsigned seed) {
 }
 
 TEST(SpectrumCheck, FindsTheFloorOfWhiteNoise) {
-  const CheckResult result = check_spectrum({made(white(8000, 0.2, 1))});
+  const CheckResult result = check_spectrum({with_defect(white(8000, 0.2, 1))});
   ASSERT_TRUE(result.ran) << result.reason;
   // Three standard errors as stated, which must themselves be small: a thousand independent values and more.
   EXPECT_NEAR(result.number("floor_hpa"), 0.2, 3.0 * result.number("floor_stderr_hpa"));
@@ -61,7 +61,7 @@ TEST(SpectrumCheck, FindsTheFloorOfWhiteNoise) {
 }
 
 TEST(SpectrumCheck, ExcessNoiseIsInconsistent) {
-  EXPECT_EQ(check_spectrum({made(white(4000, 0.6, 2))}).verdict, CheckVerdict::inconsistent);
+  EXPECT_EQ(check_spectrum({with_defect(white(4000, 0.6, 2))}).verdict, CheckVerdict::inconsistent);
 }
 
 /// A random walk, smoothed over two samples: frequency to the -2 and steeper.
@@ -78,7 +78,7 @@ std::vector<double> falling(double step) {
 }
 
 TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
-  const CheckResult result = check_spectrum({made(falling(0.02))});
+  const CheckResult result = check_spectrum({with_defect(falling(0.02))});
   ASSERT_TRUE(result.ran);
   EXPECT_LT(result.number("slope"), -1.5);
   EXPECT_THAT(result.finding, HasSubstr("still falls"));
@@ -86,7 +86,7 @@ TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
 
 // Where the spectrum does not flatten, its power is an upper limit of the noise, which contradicts nothing.
 TEST(SpectrumCheck, TurbulenceAboveTheLimitIsNoEvidenceOfNoise) {
-  const CheckResult result = check_spectrum({made(falling(4.0))});
+  const CheckResult result = check_spectrum({with_defect(falling(4.0))});
   ASSERT_TRUE(result.ran) << result.reason;
   EXPECT_GT(result.number("floor_hpa"), 0.3);
   EXPECT_NE(result.verdict, CheckVerdict::inconsistent);
@@ -95,7 +95,7 @@ TEST(SpectrumCheck, TurbulenceAboveTheLimitIsNoEvidenceOfNoise) {
 TEST(SpectrumCheck, OctavesHaveTheVarianceOfTheSeries) {
   // White noise: every octave has half the variance of the next shorter one, and together they have all but
   // that of periods beyond 256 s and of the line, 1 %.
-  const CheckResult result = check_spectrum({made(white(20000, 0.3, 4))});
+  const CheckResult result = check_spectrum({with_defect(white(20000, 0.3, 4))});
   const auto& bars = result.bars;
   double sum = 0.0;
   for (std::size_t i = 0; i < bars.size(); ++i) {
@@ -108,8 +108,8 @@ TEST(SpectrumCheck, OctavesHaveTheVarianceOfTheSeries) {
 }
 
 TEST(SpectrumCheck, UnusedFlightsAreThoseWithTheSeries) {
-  const CheckedFlight fast = made(white(8000, 0.2, 6), 0.04);
-  const CheckedFlight slow = made(white(1000, 0.2, 7));
+  const CheckedFlight fast = with_defect(white(8000, 0.2, 6), 0.04);
+  const CheckedFlight slow = with_defect(white(1000, 0.2, 7));
   CheckedFlight without_laser = slow;
   without_laser.air.laser.reset();
   EXPECT_THAT(check_spectrum({fast, without_laser}).notes, testing::IsEmpty());
@@ -120,7 +120,7 @@ TEST(SpectrumCheck, UnusedFlightsAreThoseWithTheSeries) {
 TEST(SpectrumCheck, ReasonForNoResultIsReported) {
   std::vector<double> holes = white(4000, 0.2, 5);
   for (std::size_t i = 0; i < holes.size(); i += 200) holes[i] = std::numeric_limits<double>::quiet_NaN();
-  const CheckResult result = check_spectrum({made(holes)});
+  const CheckResult result = check_spectrum({with_defect(holes)});
   EXPECT_FALSE(result.ran);
   EXPECT_THAT(result.reason, HasSubstr("gap"));
 }
