@@ -28,7 +28,7 @@ using testing::HasSubstr;
 namespace {
 
 /// A formula in addition to the catalogue, at another location than the ports and nonlinear in a quantity.
-ModelEffect formula() {
+ModelEffect total_line_formula() {
   ModelEffect effect;
   effect.id = "try-1";
   effect.formula = "k * sin(roll / 10) + c * attack * mach";
@@ -174,8 +174,8 @@ TEST(Candidates, OtherSystemsHaveOneCandidateEach) {
 }
 
 TEST(Candidates, FormulasNeedTheirVariables) {
-  ModelEffect good = formula();
-  ModelEffect bad = formula();
+  ModelEffect good = total_line_formula();
+  ModelEffect bad = total_line_formula();
   bad.id = "try-2";
   bad.formula = "k * NO_SUCH_VARIABLE + c";
   const CandidateSet set = candidates_of_file(laser_model(), {good, bad});

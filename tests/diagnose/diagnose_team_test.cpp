@@ -8,17 +8,17 @@
 #include <pcor/simulate/simulate.hpp>
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
-#include <iterator>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "diagnose/tried_formula.hpp"
 #include "parallel/packed.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "support/error_of.hpp"
+#include "support/short_flight.hpp"
 #include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
@@ -50,14 +50,15 @@ namespace pcor {
 namespace {
 
 using internal::packed;
+using test::laser_model;
 using test::run_with_communicator;
+using test::scenario_text;
+using test::tried_formula;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
 using Paths = std::vector<std::filesystem::path>;
-
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
 /// Five flights of a quarter of an hour, of different lengths of files, that lack an effect.
 Paths flights(const std::string& effect, unsigned seed) {
@@ -66,8 +67,7 @@ Paths flights(const std::string& effect, unsigned seed) {
   for (unsigned flight = 0; flight < 5; ++flight) {
     paths.push_back(directory / (std::to_string(seed) + "-" + std::to_string(flight) + ".nc"));
     if (std::filesystem::exists(paths.back())) continue;
-    std::ifstream file(scenarios / "c130-short.toml");
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string text = scenario_text("c130-short");
     Scenario scenario = parse_scenario(effect.empty() ? text : text + "\n[[effect]]\n" + effect, "short");
     scenario.seed = seed + flight;
     scenario.start += 86400.0 * flight;
@@ -75,8 +75,6 @@ Paths flights(const std::string& effect, unsigned seed) {
   }
   return paths;
 }
-
-ModelDefinition model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 /// Results that the JSON of a diagnosis leaves out.
 std::string beside_json(const Diagnosis& diagnosis) {
@@ -106,7 +104,7 @@ void expect_same(const Diagnosis& one, const Diagnosis& other) {
 }
 
 /// Runs a team and returns its exchanges.
-void run(std::size_t size, const std::function<void(Communicator&)>& work) {
+void run_team(std::size_t size, const std::function<void(Communicator&)>& work) {
   testing::internal::CaptureStderr();  // HDF5 prints errors of failed netCDF queries in further threads
   const auto sent = run_with_communicator(size, work, true);
   testing::internal::GetCapturedStderr();
@@ -117,31 +115,22 @@ void run(std::size_t size, const std::function<void(Communicator&)>& work) {
 
 /// The diagnosis of one process, which that of a team has to be.
 Diagnosis expect_that_of_one(const Paths& paths, const References& references, DiagnoseOptions options = {}) {
-  const Diagnosis alone = diagnose(paths, model(), references, options);
+  const Diagnosis alone = diagnose(paths, laser_model(), references, options);
   for (const std::size_t size : {1U, 2U, 3U, 6U}) {
     SCOPED_TRACE(size);
-    run(size, [&](Communicator& comm) {
-      expect_same(diagnose({paths, {{}, &comm}}, model(), references, options), alone);
+    run_team(size, [&](Communicator& comm) {
+      expect_same(diagnose({paths, {{}, &comm}}, laser_model(), references, options), alone);
     });
   }
   return alone;
 }
 
-ModelEffect formula(const std::string& text) {
-  ModelEffect effect;
-  effect.id = "try-1";
-  effect.formula = text;
-  effect.parameter_names = {"k"};
-  effect.parameters = {0.0};
-  return effect;
-}
-
-const std::string beta_odd = "id = \"static-beta-odd\"\nb1 = -0.02\n";
+const std::string strong_beta_odd = "id = \"static-beta-odd\"\nb1 = -0.02\n";
 
 TEST(DiagnosisOfATeam, FindsSameEffectAndSeparationAdvice) {
   DiagnoseOptions options;
-  options.formulas = {formula("k * sideslip")};
-  const Diagnosis diagnosis = expect_that_of_one(flights(beta_odd, 10), {lams_reference()}, options);
+  options.formulas = {tried_formula("k * sideslip")};
+  const Diagnosis diagnosis = expect_that_of_one(flights(strong_beta_odd, 10), {lams_reference()}, options);
   ASSERT_THAT(diagnosis.findings, Not(IsEmpty()));
   EXPECT_THAT(diagnosis.findings[0].aliases, Not(IsEmpty()));
   EXPECT_THAT(diagnosis.findings[0].advice.sentence, Not(IsEmpty()));
@@ -158,8 +147,8 @@ TEST(DiagnosisOfATeam, FindsTheSameEffectWithFlapsExtended) {
 }
 
 TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
-  const Paths paths = flights(beta_odd, 10);
-  const Diagnosis diagnosis = diagnose(paths, model(), {lams_reference()});
+  const Paths paths = flights(strong_beta_odd, 10);
+  const Diagnosis diagnosis = diagnose(paths, laser_model(), {lams_reference()});
   const auto candidates = what_if_candidates(diagnosis, {});
   WhatIfOptions options;
   options.diagnose.training_share = 0.8;
@@ -167,12 +156,12 @@ TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
   const auto of_team = [&](Communicator& comm, WhatIfOptions with) {
     const FlightSet all(paths, {{}, &comm});
     with.holdout = all.part(paths.size() - 1, 1);
-    return what_if(all.part(0, paths.size() - 1), model(), {lams_reference()}, candidates, with);
+    return what_if(all.part(0, paths.size() - 1), laser_model(), {lams_reference()}, candidates, with);
   };
   const WhatIf alone = of_team(pcor::serial_communicator(), options);
   EXPECT_GT(alone.panel.held_out.samples, 0.0);
   for (const std::size_t size : {2U, 6U}) {
-    run(size, [&](Communicator& comm) {
+    run_team(size, [&](Communicator& comm) {
       const WhatIf found = of_team(comm, options);
       EXPECT_EQ(packed(found.panel.coefficients), packed(alone.panel.coefficients));
       EXPECT_EQ(packed(found.panel.weights), packed(alone.panel.weights));
@@ -183,7 +172,7 @@ TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
     });
   }
   options.diagnose.series_of = {1};
-  run(2, [&](Communicator& comm) {
+  run_team(2, [&](Communicator& comm) {
     const WhatIf shown = of_team(comm, options);
     ASSERT_EQ(shown.flights.size(), 2U);
     EXPECT_EQ(shown.flights[0].samples->name, alone.flights[1].samples->name);
@@ -200,7 +189,7 @@ TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
       flights("id = \"unknown\"\nwhere = \"static\"\non = \"PSFD\"\nof = \"ENGTRQ\"\nstrength = 3.0\n"
               "centre = 50\nscale = 100\n",
               20),
-      {lams_reference(), read_reference("total:PSFRD+QCFR", model())}, options);
+      {lams_reference(), read_reference("total:PSFRD+QCFR", laser_model())}, options);
   EXPECT_THAT(diagnosis.unexplained.variables, Not(IsEmpty()));
   EXPECT_GT(diagnosis.held_out.size(), 1U);
   for (const pcor::HeldOutPart& part : diagnosis.held_out) EXPECT_EQ(part.parts, diagnosis.held_out.size());
@@ -220,7 +209,7 @@ TEST(DiagnosisOfATeam, HoldsTheRequestedRecords) {
     }
     EXPECT_THAT(what_if_candidates(diagnosis, {}), Not(IsEmpty()));
     if (!requested.empty()) {
-      EXPECT_THAT(diagnosis_report(diagnosis, model()).summary,
+      EXPECT_THAT(diagnosis_report(diagnosis, laser_model()).summary,
                   testing::Contains(HasSubstr("2 of the 5 flights")));
     }
     EXPECT_EQ(held, requested);
@@ -232,11 +221,14 @@ TEST(DiagnosisOfATeam, FailsOnAllMembersAsInOneProcess) {
   const test::TemporaryDirectory directory;
   paths[2] = directory / "broken.nc";
   std::ofstream(paths[2]) << "no flight";
-  const std::optional<Error> alone = test::error_of([&] { diagnose(paths, model(), {lams_reference()}); });
+  const std::optional<Error> alone =
+      test::error_of([&] { diagnose(paths, laser_model(), {lams_reference()}); });
   ASSERT_THAT(alone, test::IsError(Error::Code::file, "broken.nc"));
   for (const std::size_t size : {2U, 3U, 6U}) {
-    run(size, [&](Communicator& comm) {
-      const auto error = test::error_of([&] { diagnose({paths, {{}, &comm}}, model(), {lams_reference()}); });
+    run_team(size, [&](Communicator& comm) {
+      const auto error = test::error_of([&] {
+        diagnose({paths, {{}, &comm}}, laser_model(), {lams_reference()});
+      });
       EXPECT_THAT(error, test::IsError(alone->code(), alone->what())) << "of " << comm.rank();
     });
   }

@@ -10,14 +10,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <netcdf>
 #include <string>
 #include <vector>
 
+#include "diagnose/tried_formula.hpp"
+#include "support/data.hpp"
 #include "support/says.hpp"
+#include "support/short_flight.hpp"
 #include "support/temporary_directory.hpp"
 
 using pcor::Alias;
@@ -27,6 +28,8 @@ using pcor::Finding;
 using pcor::ModelDefinition;
 using pcor::ModelEffect;
 using pcor::Verdict;
+using pcor::test::laser_model;
+using pcor::test::scenarios;
 using testing::AllOf;
 using testing::AnyOf;
 using testing::Contains;
@@ -39,8 +42,6 @@ using testing::SizeIs;
 namespace {
 
 using Paths = std::vector<std::filesystem::path>;
-
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
 const std::string static_lag = "id = \"static-lag\"\ntau = 0.4\n";
 const std::string beta_odd = "id = \"static-beta-odd\"\nb1 = -0.006\n";
@@ -61,14 +62,13 @@ scale = 1
 )";
 
 /// A flight of a scenario with another seed, an effect, and legs before the landing; each is simulated once.
-std::filesystem::path flight(const std::string& scenario, unsigned seed, const std::string& effect = "",
-                             const std::string& legs = "") {
+std::filesystem::path simulated_flight(const std::string& scenario, unsigned seed,
+                                       const std::string& effect = "", const std::string& legs = "") {
   static const pcor::test::TemporaryDirectory directory;
   static std::map<std::string, std::filesystem::path> made;
   const std::string key = scenario + std::to_string(seed) + effect + legs;
   if (const auto found = made.find(key); found != made.end()) return found->second;
-  std::ifstream file(scenarios / (scenario + ".toml"));
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text = pcor::test::scenario_text(scenario);
   if (!effect.empty()) text += "\n[[effect]]\n" + effect;
   if (!legs.empty()) text.insert(text.find("[[leg]]\nkind = \"landing\""), legs);
   pcor::Scenario read = pcor::parse_scenario(text, scenario);
@@ -99,32 +99,24 @@ std::filesystem::path climbs(unsigned seed, double offset, double bias = 0.0) {
   return path;
 }
 
-ModelDefinition model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
-
 /// Model of the second system.
 ModelDefinition second_model() {
-  return pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" /
-                          "c130-psfrd-eq18.toml");
+  return pcor::read_model(pcor::test::data_directory / "models" / "c130-psfrd-eq18.toml");
 }
 
 /// The laser, and the total pressures of the two systems.
 pcor::References laser_and_total() {
-  return {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())};
+  return {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", laser_model())};
 }
 
 Diagnosis diagnose(const Paths& flights, const DiagnoseOptions& options = {}) {
-  return pcor::diagnose(flights, model(), {pcor::lams_reference()}, options);
+  return pcor::diagnose(flights, laser_model(), {pcor::lams_reference()}, options);
 }
 
 /// A formula at the static ports with a coefficient k.
 DiagnoseOptions with_formula(const std::string& text) {
-  ModelEffect effect;
-  effect.id = "try-1";
-  effect.formula = text;
-  effect.parameter_names = {"k"};
-  effect.parameters = {0.0};
   DiagnoseOptions options;
-  options.formulas = {effect};
+  options.formulas = {pcor::test::tried_formula(text)};
   return options;
 }
 
@@ -155,7 +147,7 @@ void expect_coefficient(const Finding& finding, double truth) {
 // A claim is allowed in 0.3 % of such flights, structure in 0.2 %: of four none.
 TEST(Diagnose, CompleteModelIsSilent) {
   for (unsigned seed = 301; seed <= 304; ++seed) {
-    const Diagnosis diagnosis = diagnose({flight("c130-eq18", seed)});
+    const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", seed)});
     EXPECT_EQ(diagnosis.verdict, Verdict::silent) << seed;
     EXPECT_THAT(diagnosis.findings, IsEmpty());
     EXPECT_FALSE(diagnosis.unexplained.significant);
@@ -174,11 +166,11 @@ TEST(Diagnose, CompleteModelIsSilent) {
 }
 
 TEST(Diagnose, ShortFlightIsSilent) {
-  EXPECT_EQ(diagnose({flight("c130-short", 311)}).verdict, Verdict::silent);
+  EXPECT_EQ(diagnose({simulated_flight("c130-short", 311)}).verdict, Verdict::silent);
 }
 
 TEST(Diagnose, FindsALagOfTheStaticLine) {
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 321, static_lag)});
+  const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", 321, static_lag)});
   EXPECT_EQ(diagnosis.verdict, Verdict::identified);
   ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-lag"));
   const Finding& finding = diagnosis.findings[0];
@@ -200,7 +192,7 @@ TEST(Diagnose, FindsALagOfTheStaticLine) {
 }
 
 TEST(Diagnose, FindsAnEffectOfSideslip) {
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 322, beta_odd)});
+  const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", 322, beta_odd)});
   ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-beta-odd"));
   EXPECT_EQ(diagnosis.verdict, Verdict::identified);
   expect_coefficient(diagnosis.findings[0], -0.006);
@@ -210,10 +202,10 @@ TEST(Diagnose, FindsAnEffectOfSideslip) {
 
 // The coefficients of a model are where the last fit left them, which may be far from these flights.
 TEST(Diagnose, FindingIsIndependentOfStartCoefficients) {
-  ModelDefinition off = model();
+  ModelDefinition off = laser_model();
   off.model.effects[0].parameters[0] = 0.001;
   off.model.effects[2].parameters[0] = 0.07;
-  const Paths flights{flight("c130-eq18", 321, static_lag)};
+  const Paths flights{simulated_flight("c130-eq18", 321, static_lag)};
   const Diagnosis fitted = diagnose(flights);
   const Diagnosis diagnosis = pcor::diagnose(flights, off, {pcor::lams_reference()});
   EXPECT_GT(diagnosis.rms_given, 1.2 * diagnosis.residual_rms);
@@ -223,7 +215,8 @@ TEST(Diagnose, FindingIsIndependentOfStartCoefficients) {
 }
 
 TEST(Diagnose, FindsTwoEffectsAtOnce) {
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 323, static_lag + "\n[[effect]]\n" + beta_odd)});
+  const Diagnosis diagnosis =
+      diagnose({simulated_flight("c130-eq18", 323, static_lag + "\n[[effect]]\n" + beta_odd)});
   EXPECT_THAT(names_of(diagnosis), testing::UnorderedElementsAre("static-lag", "static-beta-odd"));
 }
 
@@ -233,14 +226,14 @@ TEST(Diagnose, NoManoeuvresGiveNoUnsupportedClaim) {
            {"id = \"static-beta-odd\"\nb1 = -0.002\n", "static-beta-odd"},
            {"id = \"load-factor\"\nper_g = 0.5\n", "load-factor"},
            {"id = \"static-attack\"\na3 = 0.0004\n", "static-attack"}}) {
-    const Diagnosis diagnosis = diagnose({flight("c130-no-manoeuvres", 331, effect)});
+    const Diagnosis diagnosis = diagnose({simulated_flight("c130-no-manoeuvres", 331, effect)});
     EXPECT_NE(diagnosis.verdict, Verdict::partial) << name;
     for (const Finding& finding : diagnosis.findings) EXPECT_THAT(family_of(finding), Contains(name));
   }
 }
 
 TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)});
+  const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", 341, engine_torque)});
   EXPECT_THAT(diagnosis.verdict, AnyOf(Verdict::unexplained, Verdict::partial));
   ASSERT_TRUE(diagnosis.unexplained.significant);
   ASSERT_FALSE(diagnosis.unexplained.variables.empty());
@@ -261,16 +254,16 @@ TEST(Diagnose, ExcludedSamplesAreNotUsed) {
   DiagnoseOptions options;
   options.not_variables = {"ENGTRQ"};
   for (const pcor::EmpiricalPredictor& variable :
-       diagnose({flight("c130-eq18", 341, engine_torque)}, options).unexplained.variables)
+       diagnose({simulated_flight("c130-eq18", 341, engine_torque)}, options).unexplained.variables)
     EXPECT_NE(variable.name, "ENGTRQ");
   options.whole_file = false;
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)}, options);
+  const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", 341, engine_torque)}, options);
   for (const pcor::EmpiricalPredictor& variable : diagnosis.unexplained.variables)
     EXPECT_THAT(variable.formula, IsEmpty()) << variable.name;
 }
 
 TEST(Diagnose, HiddenWaveIsReportedAsUnexplained) {
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 351, hidden_wave)});
+  const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", 351, hidden_wave)});
   EXPECT_EQ(diagnosis.verdict, Verdict::unexplained);
   EXPECT_THAT(diagnosis.findings, IsEmpty());
   EXPECT_TRUE(diagnosis.unexplained.significant);
@@ -281,7 +274,7 @@ TEST(Diagnose, HiddenWaveIsReportedAsUnexplained) {
 
 TEST(Diagnose, FindsACorrectFormula) {
   const Diagnosis diagnosis =
-      diagnose({flight("c130-eq18", 18, engine_torque)}, with_formula("k * (ENGTRQ - 50) / 100"));
+      diagnose({simulated_flight("c130-eq18", 18, engine_torque)}, with_formula("k * (ENGTRQ - 50) / 100"));
   ASSERT_THAT(names_of(diagnosis), Contains("try-1"));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "try-1");
   expect_coefficient(diagnosis.findings[0], 3.0);
@@ -291,8 +284,8 @@ TEST(Diagnose, FindsACorrectFormula) {
 // formula leaves would be named as an effect of the pressure if its shape were exact.
 TEST(Diagnose, TheShapeOfAnAddedEffectIsUncertain) {
   const pcor::FlightSet flights(
-      {flight("c130-eq18", 341, engine_torque), flight("c130-eq18", 342, engine_torque)});
-  ModelDefinition law = model();
+      {simulated_flight("c130-eq18", 341, engine_torque), simulated_flight("c130-eq18", 342, engine_torque)});
+  ModelDefinition law = laser_model();
   law.variables[pcor::Quantity::engine_torque] = "ENGTRQ";
   const pcor::References laser{pcor::lams_reference()};
   ModelDefinition added =
@@ -304,7 +297,8 @@ TEST(Diagnose, TheShapeOfAnAddedEffectIsUncertain) {
 }
 
 TEST(Diagnose, FormulaWithoutValuesStatesReason) {
-  const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
+  const Diagnosis diagnosis =
+      diagnose({simulated_flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
   EXPECT_THAT(diagnosis.not_testable,
               Contains(AllOf(Field(&pcor::NotTestable::effect, "try-1"),
@@ -312,12 +306,13 @@ TEST(Diagnose, FormulaWithoutValuesStatesReason) {
 }
 
 TEST(Diagnose, FormulaThatIsZeroEverywhereIsNotTested) {
-  const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * max(mach - 5, 0)"));
+  const Diagnosis diagnosis =
+      diagnose({simulated_flight("c130-short", 311)}, with_formula("k * max(mach - 5, 0)"));
   EXPECT_THAT(diagnosis.not_testable, Contains(Field(&pcor::NotTestable::effect, "try-1")));
 }
 
 TEST(Diagnose, OnlyTheTrainingShareIsUsed) {
-  const Paths flights{flight("c130-eq18", 321, static_lag)};
+  const Paths flights{simulated_flight("c130-eq18", 321, static_lag)};
   DiagnoseOptions options;
   options.training_share = 0.6;
   const Diagnosis part = diagnose(flights, options);
@@ -338,8 +333,8 @@ TEST(Diagnose, OnlyTheTrainingShareIsUsed) {
 }
 
 TEST(Diagnose, TwoFlightsConstrainMoreThanOne) {
-  const std::filesystem::path first = flight("c130-eq18", 321, static_lag);
-  const std::filesystem::path second = flight("c130-eq18", 324, static_lag);
+  const std::filesystem::path first = simulated_flight("c130-eq18", 321, static_lag);
+  const std::filesystem::path second = simulated_flight("c130-eq18", 324, static_lag);
   std::size_t done = 0;
   DiagnoseOptions options;
   options.progress = [&](std::size_t now, std::size_t total) {
@@ -362,7 +357,7 @@ TEST(Diagnose, TwoFlightsConstrainMoreThanOne) {
 }
 
 TEST(Diagnose, RepeatedRunsGiveTheSameResult) {
-  const Paths flights{flight("c130-eq18", 322, beta_odd)};
+  const Paths flights{simulated_flight("c130-eq18", 322, beta_odd)};
   const Diagnosis first = diagnose(flights);
   const Diagnosis second = diagnose(flights);
   EXPECT_EQ(first.threshold, second.threshold);
@@ -374,7 +369,7 @@ TEST(Diagnose, RepeatedRunsGiveTheSameResult) {
 }
 
 TEST(Diagnose, EffectSeriesHasTheStatedRms) {
-  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 321, static_lag)});
+  const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", 321, static_lag)});
   const pcor::FlightDiagnosis& along = diagnosis.flights.at(0);
   ASSERT_THAT(along.added, SizeIs(diagnosis.findings.size()));
   double squares = 0.0;
@@ -393,19 +388,20 @@ TEST(Diagnose, EffectSeriesHasTheStatedRms) {
 }
 
 TEST(Diagnose, ModelWithoutFreeCoefficientsIsDiagnosed) {
-  ModelDefinition fixed = model();
+  ModelDefinition fixed = laser_model();
   fixed.fits.assign(3, pcor::EffectFit(1));
   for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
   const Diagnosis diagnosis =
-      pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, {pcor::lams_reference()});
+      pcor::diagnose({simulated_flight("c130-eq18", 322, beta_odd)}, fixed, {pcor::lams_reference()});
   // The first is measured at the sensor, which is the residual to first order.
   EXPECT_NEAR(diagnosis.residual_rms, diagnosis.rms_given, 1e-3 * diagnosis.rms_given);
   EXPECT_THAT(names_of(diagnosis), Contains("static-beta-odd"));
 }
 
 TEST(Diagnose, StaticSystemReferenceFindsUnsharedEffects) {
-  const Diagnosis diagnosis = pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)},
-                                             model(), {pcor::static_system_reference(second_model())});
+  const Diagnosis diagnosis =
+      pcor::diagnose({simulated_flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, laser_model(),
+                     {pcor::static_system_reference(second_model())});
   EXPECT_THAT(names_of(diagnosis), Contains("static-beta-odd"));
 }
 
@@ -414,8 +410,8 @@ TEST(Diagnose, SameEffectOfTheOtherSystemIsARival) {
   const auto reference = pcor::static_system_reference(second_model());
   pcor::DiagnoseOptions trusted;
   trusted.trust_reference = true;
-  const Paths flights{flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)};
-  for (const pcor::Finding& finding : pcor::diagnose(flights, model(), {reference}).findings) {
+  const Paths flights{simulated_flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)};
+  for (const pcor::Finding& finding : pcor::diagnose(flights, laser_model(), {reference}).findings) {
     const auto names_either = [&](const pcor::Alias& alias) {
       return alias.effect == "reference:" + finding.id() || "reference:" + alias.effect == finding.id();
     };
@@ -425,7 +421,7 @@ TEST(Diagnose, SameEffectOfTheOtherSystemIsARival) {
     EXPECT_NEAR(twin->probability, finding.probability, 0.01) << finding.id();
     EXPECT_TRUE(finding.may_be_of_model() && finding.may_be_of_reference());
   }
-  const Diagnosis diagnosis = pcor::diagnose(flights, model(), {reference}, trusted);
+  const Diagnosis diagnosis = pcor::diagnose(flights, laser_model(), {reference}, trusted);
   EXPECT_THAT(names_of(diagnosis), Contains("static-beta-odd"));
   for (const pcor::Finding& finding : diagnosis.findings) {
     EXPECT_FALSE(finding.of_reference) << finding.id();
@@ -439,7 +435,7 @@ TEST(Diagnose, LineIsComparedWithEffectsByAllReferences) {
   std::string torque = engine_torque;
   torque.replace(torque.find("3.0"), 3, "6.0");
   const Diagnosis diagnosis =
-      pcor::diagnose({flight("c130-no-manoeuvres", 702, torque)}, model(), laser_and_total());
+      pcor::diagnose({simulated_flight("c130-no-manoeuvres", 702, torque)}, laser_model(), laser_and_total());
   EXPECT_THAT(diagnosis.notes, Contains(pcor::test::Says("line in ENGTRQ")));
 }
 
@@ -450,7 +446,7 @@ TEST(Diagnose, TotalPressuresLocateTracedVariable) {
     std::string torque = engine_torque;
     if (total) torque.replace(torque.find("static"), 6, "total");
     const Diagnosis diagnosis =
-        pcor::diagnose({flight("c130-eq18", 343, torque)}, model(), laser_and_total());
+        pcor::diagnose({simulated_flight("c130-eq18", 343, torque)}, laser_model(), laser_and_total());
     ASSERT_FALSE(diagnosis.unexplained.variables.empty()) << total;
     // The laser alone shows an error in the total line as a drift that varies with more than one variable.
     const pcor::EmpiricalPredictor& traced = diagnosis.unexplained.variables.front();
@@ -467,8 +463,8 @@ TEST(Diagnose, TotalPressuresLocateTracedVariable) {
 // The simulated avionics low-pass their pressures; the second pair does not.
 TEST(Diagnose, EffectIsAssignedToOneOfTwoSystems) {
   pcor::References references = laser_and_total();
-  references.push_back(pcor::read_reference("total:PS_A+QC_A", model()));
-  const Diagnosis diagnosis = pcor::diagnose({flight("c130-eq18", 363)}, model(), references);
+  references.push_back(pcor::read_reference("total:PS_A+QC_A", laser_model()));
+  const Diagnosis diagnosis = pcor::diagnose({simulated_flight("c130-eq18", 363)}, laser_model(), references);
   ASSERT_THAT(diagnosis.findings, SizeIs(1));
   const Finding& finding = diagnosis.findings[0];
   EXPECT_EQ(finding.id(), "reference:PS_A+QC_A:total-lag");
@@ -479,9 +475,9 @@ TEST(Diagnose, EffectIsAssignedToOneOfTwoSystems) {
 
 // A drift of the static transducer cancels in the residual by the laser, but not in the total pressure.
 TEST(Diagnose, LargestSizeIsThatOfOneReference) {
-  const Paths drift{flight("c130-eq18", 364, "id = \"time-drift\"\non = \"PSFD\"\nstatic = 0.4\n")};
-  const Diagnosis both = pcor::diagnose(drift, model(), laser_and_total());
-  const Diagnosis total = pcor::diagnose(drift, model(), {laser_and_total()[1]});
+  const Paths drift{simulated_flight("c130-eq18", 364, "id = \"time-drift\"\non = \"PSFD\"\nstatic = 0.4\n")};
+  const Diagnosis both = pcor::diagnose(drift, laser_model(), laser_and_total());
+  const Diagnosis total = pcor::diagnose(drift, laser_model(), {laser_and_total()[1]});
   ASSERT_THAT(both.findings, SizeIs(1));
   ASSERT_THAT(total.findings, SizeIs(1));
   EXPECT_EQ(both.findings[0].largest_reference, "total:PSFRD+QCFR");
@@ -496,7 +492,7 @@ TEST(Diagnose, LargestSizeIsThatOfOneReference) {
 TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "frozen.nc";
-  std::filesystem::copy_file(flight("c130-eq18", 362), path);
+  std::filesystem::copy_file(simulated_flight("c130-eq18", 362), path);
   {
     netCDF::NcFile file(path.string(), netCDF::NcFile::write);
     const netCDF::NcVar variable = file.getVar("PSFRD");
@@ -504,7 +500,7 @@ TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
     variable.getVar({1000}, {1}, &value);
     variable.putVar({1000}, {300}, std::vector<double>(300, value).data());
   }
-  const Diagnosis diagnosis = pcor::diagnose({path}, model(), laser_and_total());
+  const Diagnosis diagnosis = pcor::diagnose({path}, laser_model(), laser_and_total());
   EXPECT_THAT(diagnosis.notes, Contains(pcor::test::Says("PSFRD is frozen")));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
 }
@@ -513,8 +509,8 @@ TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
 TEST(Diagnose, HeightsShowThermometerBias) {
   const Paths flights{climbs(391, 1.0)};
   EXPECT_THAT(diagnose(flights).findings, IsEmpty());
-  const pcor::References references{pcor::lams_reference(), pcor::height_reference(model())};
-  const Diagnosis diagnosis = pcor::diagnose(flights, model(), references);
+  const pcor::References references{pcor::lams_reference(), pcor::height_reference(laser_model())};
+  const Diagnosis diagnosis = pcor::diagnose(flights, laser_model(), references);
   ASSERT_THAT(diagnosis.findings, SizeIs(1));
   const Finding& finding = diagnosis.findings[0];
   EXPECT_THAT(family_of(finding), Contains("temp-offset"));
@@ -529,22 +525,22 @@ TEST(Diagnose, HeightsIdentifyTheWrongSystem) {
   const Paths flights{climbs(397, 0.0, 0.5)};
   const auto total = pcor::total_pressure_reference(second_model());
   const auto names = [&](const pcor::References& references) {
-    const Diagnosis diagnosis = pcor::diagnose(flights, model(), references);
+    const Diagnosis diagnosis = pcor::diagnose(flights, laser_model(), references);
     return diagnosis.findings.size() == 1 ? family_of(diagnosis.findings[0]) : std::vector<std::string>{};
   };
   const std::vector<std::string> without = names({pcor::lams_reference(), total});
   EXPECT_THAT(without, Contains("psfd-bias"));
   EXPECT_GT(without.size(), 3U);
   const std::vector<std::string> with =
-      names({pcor::lams_reference(), total, pcor::height_reference(model())});
+      names({pcor::lams_reference(), total, pcor::height_reference(laser_model())});
   EXPECT_THAT(with, Contains("psfd-bias"));
   EXPECT_LT(with.size(), without.size());
 }
 
 TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
-  const pcor::References references{pcor::height_reference(model()), pcor::lams_reference()};
+  const pcor::References references{pcor::height_reference(laser_model()), pcor::lams_reference()};
   for (unsigned seed = 394; seed <= 396; ++seed) {
-    const Diagnosis diagnosis = pcor::diagnose({climbs(seed, 0.0)}, model(), references);
+    const Diagnosis diagnosis = pcor::diagnose({climbs(seed, 0.0)}, laser_model(), references);
     EXPECT_THAT(diagnosis.findings, IsEmpty()) << seed;
     EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS"))
         << "references with a residual for each sample are first";
@@ -552,8 +548,8 @@ TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
 }
 
 TEST(Diagnose, WindAndLaserAreUsedTogether) {
-  const Diagnosis diagnosis =
-      pcor::diagnose({climbs(394, 0.0)}, model(), {pcor::wind_reference(model()), pcor::lams_reference()});
+  const Diagnosis diagnosis = pcor::diagnose({climbs(394, 0.0)}, laser_model(),
+                                             {pcor::wind_reference(laser_model()), pcor::lams_reference()});
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
   EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS"));
 }
@@ -563,7 +559,7 @@ TEST(Diagnose, MissingFlightsOrSamplesAreErrors) {
   EXPECT_THROW(diagnose({"/nowhere/flight.nc"}), pcor::Error);
   DiagnoseOptions options;
   options.training_share = 0.1;
-  EXPECT_THROW(diagnose({flight("c130-short", 311)}, options), pcor::Error);
+  EXPECT_THROW(diagnose({simulated_flight("c130-short", 311)}, options), pcor::Error);
 }
 
 // Rules for advice on any effect.
@@ -599,7 +595,8 @@ TEST(Advice, NamesRivalsAndAManoeuvre) {
            {"c130-no-manoeuvres", "id = \"static-beta-odd\"\nb1 = -0.009\n"},
            {"c130-eq18", "id = \"load-factor\"\nper_g = 0.8\n"},
            {"c130-short", "id = \"total-lag\"\ntau = 0.3\n"}}) {
-    for (unsigned seed = 371; seed <= 373; ++seed) expect_advice(diagnose({flight(scenario, seed, effect)}));
+    for (unsigned seed = 371; seed <= 373; ++seed)
+      expect_advice(diagnose({simulated_flight(scenario, seed, effect)}));
   }
 }
 
@@ -607,7 +604,7 @@ TEST(Advice, NamesRivalsAndAManoeuvre) {
 // the catalogue.
 TEST(Advice, ComesFromTheCatalogueIfNoFlownRegimeHelps) {
   const Diagnosis diagnosis =
-      diagnose({flight("c130-no-manoeuvres", 371, "id = \"static-beta-odd\"\nb1 = -0.009\n")});
+      diagnose({simulated_flight("c130-no-manoeuvres", 371, "id = \"static-beta-odd\"\nb1 = -0.009\n")});
   expect_advice(diagnosis);
   ASSERT_THAT(diagnosis.findings, SizeIs(1));
   EXPECT_THAT(diagnosis.findings[0].aliases, Not(IsEmpty()));
@@ -623,13 +620,13 @@ TEST(Advice, FollowedAdviceSeparatesTheEffects) {
   int separated = 0;
   double expected = 0.0;
   for (unsigned seed = 11; seed <= 18; ++seed) {
-    const Diagnosis before = diagnose({flight("c130-eq18", seed, effect)});
+    const Diagnosis before = diagnose({simulated_flight("c130-eq18", seed, effect)});
     expect_advice(before);
     ASSERT_THAT(before.findings, SizeIs(1));
     const pcor::Advice& advice = before.findings[0].advice;
     if (advice.manoeuvre != "yaw manoeuvre") continue;
     EXPECT_NEAR(advice.duration, 4.0 * 144.0, 40.0);  // tolerance: detected cycles of 12 s
-    const Diagnosis after = diagnose({flight("c130-eq18", seed, effect, yaw + yaw + yaw + yaw)});
+    const Diagnosis after = diagnose({simulated_flight("c130-eq18", seed, effect, yaw + yaw + yaw + yaw)});
     ASSERT_THAT(names_of(after), testing::ElementsAre("static-beta-odd"));
     ++followed;
     expected += advice.power;

@@ -35,7 +35,7 @@ constexpr double start = 1321560000.0;  // 2011-11-17 20:00:00 UTC
 /// An hour: a climb, a level leg with a yaw manoeuvre, a descent. Two effects are missing, one with sideslip
 /// and one with the vertical speed, and one error varies with the torque. The first 100 samples are not
 /// used.
-FlightDiagnosis flight(const std::string& name, unsigned seed) {
+FlightDiagnosis diagnosed_flight(const std::string& name, unsigned seed) {
   constexpr std::size_t count = 3600;
   auto samples = std::make_shared<FlightSamples>();
   samples->name = name;
@@ -158,7 +158,7 @@ Diagnosis partial() {
   diagnosis.samples = 7000;
   diagnosis.masks[0] = 7000;
   diagnosis.masks[3] = 200;
-  diagnosis.flights = {flight("rf01", 0), flight("rf02", 1)};
+  diagnosis.flights = {diagnosed_flight("rf01", 0), diagnosed_flight("rf02", 1)};
   diagnosis.notes = {"the laser of rf02 was off for 3 min"};
   return diagnosis;
 }
@@ -231,7 +231,7 @@ ImprovedFlight improved(const FlightDiagnosis& flight, std::size_t fitted) {
   return {flight.samples, fitted, flight.before.size() - fitted, flight.before, flight.before, flight.before};
 }
 
-ModelDefinition model() {
+ModelDefinition named_model() {
   ModelDefinition file;
   file.model.name = "C-130 PSFD 2011";
   return file;
@@ -255,7 +255,7 @@ std::string split_words(const Report& report) {
 }
 
 TEST(DiagnosisReport, StatesFindingSizeAndSignificance) {
-  const Report report = diagnosis_report(partial(), model());
+  const Report report = diagnosis_report(partial(), named_model());
   EXPECT_EQ(report.title,
             "Effects are missing: static-beta-odd and static-lag; the remaining structure is not explained "
             "by any effect");
@@ -271,7 +271,7 @@ TEST(DiagnosisReport, StatesFindingSizeAndSignificance) {
 }
 
 TEST(DiagnosisReport, EachFindingHasAPageOfText) {
-  const Report report = diagnosis_report(partial(), model());
+  const Report report = diagnosis_report(partial(), named_model());
   const auto& page = item<ReportText>(report, "Finding 1: static-beta-odd");
   for (const char* part :
        {"The correction b1 * sideslip_ratio * static_pressure (hPa) is added to delta-p.",
@@ -291,7 +291,7 @@ TEST(DiagnosisReport, NamesIndistinguishableEffects) {
   Diagnosis diagnosis = partial();
   diagnosis.verdict = Verdict::ambiguous;
   EXPECT_EQ(
-      diagnosis_report(diagnosis, model()).title,
+      diagnosis_report(diagnosis, named_model()).title,
       "Effects are missing: static-beta-odd and static-lag; these flights cannot distinguish all possible "
       "causes");
   diagnosis.findings[1].rival = "the atmosphere";
@@ -300,19 +300,19 @@ TEST(DiagnosisReport, NamesIndistinguishableEffects) {
   EXPECT_THAT(verdict_text(diagnosis), HasSubstr(", or the atmosphere is the cause; "));
   diagnosis.findings[0].rival.clear();
   diagnosis.findings.resize(1);
-  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
+  EXPECT_EQ(diagnosis_report(diagnosis, named_model()).title,
             "An effect is missing, static-beta-odd or lams-azimuth: these flights cannot distinguish them");
   diagnosis.findings.front().aliases.resize(4);
   EXPECT_EQ(
-      diagnosis_report(diagnosis, model()).title,
+      diagnosis_report(diagnosis, named_model()).title,
       "An effect is missing, static-beta-odd or one of 4 others: these flights cannot distinguish them");
   diagnosis.verdict = Verdict::identified;
-  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
+  EXPECT_EQ(diagnosis_report(diagnosis, named_model()).title,
             "An effect is missing: static-port error with sideslip, ports not perfectly paired");
 }
 
 TEST(DiagnosisReport, FirstPictureShowsFindingAgainstItsInputs) {
-  const Report report = diagnosis_report(partial(), model());
+  const Report report = diagnosis_report(partial(), named_model());
   const auto& sideslip =
       item<BinnedPanel>(report, "Residual before and after, against the inputs of static-beta-odd");
   EXPECT_EQ(std::get_if<BinnedPanel>(&report.items.front()), &sideslip);  // the first picture
@@ -327,7 +327,7 @@ TEST(DiagnosisReport, FirstPictureShowsFindingAgainstItsInputs) {
 }
 
 TEST(DiagnosisReport, RanksFindingsAndRivals) {
-  const Report report = diagnosis_report(partial(), model());
+  const Report report = diagnosis_report(partial(), named_model());
   const auto& bars = item<BarPanel>(report, "Ranking");
   ASSERT_EQ(bars.bars.size(), 4U);
   EXPECT_EQ(bars.bars[1].label, "or lams-azimuth");
@@ -341,7 +341,7 @@ TEST(DiagnosisReport, RanksFindingsAndRivals) {
 }
 
 TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
-  const Report report = diagnosis_report(partial(), model());
+  const Report report = diagnosis_report(partial(), named_model());
   EXPECT_EQ(report.time.size(), 7000U);
   EXPECT_THAT(report.flight_starts, ElementsAre(0U, 3500U));
   EXPECT_THAT(report.flight_names, ElementsAre("rf01", "rf02"));
@@ -350,7 +350,7 @@ TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
 }
 
 TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
-  const Report report = diagnosis_report(unexplained(), model());
+  const Report report = diagnosis_report(unexplained(), named_model());
   EXPECT_EQ(report.title, "The residual has structure that is not explained by any effect");
   EXPECT_THAT(report.summary, Contains(HasSubstr("0.047 hPa rms, largest in the regime level")));
   EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ): a curve explains 31 %")));
@@ -366,7 +366,7 @@ TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
 TEST(DiagnosisReport, VariableWithoutALineHasNoSlope) {
   Diagnosis diagnosis = unexplained();
   diagnosis.unexplained.variables.front().slope_error = 0.0;
-  const Report report = diagnosis_report(diagnosis, model());
+  const Report report = diagnosis_report(diagnosis, named_model());
   const auto& table = item<ReportTable>(report, "Variables that the unexplained structure varies with");
   EXPECT_EQ(table.rows[0][2], "");
   EXPECT_EQ(table.rows[0][3], "no line");
@@ -374,20 +374,20 @@ TEST(DiagnosisReport, VariableWithoutALineHasNoSlope) {
 
 TEST(DiagnosisReport, NamesTheCoefficientsThatAreFittedAgain) {
   Diagnosis diagnosis = unexplained();
-  const auto summary = [&] { return diagnosis_report(diagnosis, model()).summary; };
+  const auto summary = [&] { return diagnosis_report(diagnosis, named_model()).summary; };
   EXPECT_THAT(summary(), Contains(HasSubstr("0.196 hPa with the model's own coefficients fitted again")));
   diagnosis.own = {{"static-constant.a0", "1", 0.0, 0.1}, {"reference:static-constant.a0", "1", 0.0, 0.1}};
   EXPECT_THAT(summary(),
               Contains(HasSubstr(
                   "0.196 hPa with the coefficients of the model and of the reference system fitted again")));
-  const Report report = diagnosis_report(diagnosis, model());
+  const Report report = diagnosis_report(diagnosis, named_model());
   const auto& regimes = item<RegimeTable>(report, "By regime");
   EXPECT_THAT(regimes.caption, HasSubstr("the reference system fitted again"));
 }
 
 // A reference need not be a static pressure: wind, height, total pressure.
 TEST(DiagnosisReport, ResidualIsNotCalledAStaticPressure) {
-  const Report report = diagnosis_report(partial(), model());
+  const Report report = diagnosis_report(partial(), named_model());
   EXPECT_THAT(item<TimePanel>(report, "Residual in time").caption,
               AllOf(HasSubstr("reference minus model"), Not(HasSubstr("tatic pressure"))));
 }
@@ -398,12 +398,12 @@ TEST(DiagnosisReport, WhatIfHasTheNoiseOfTheReport) {
   WhatIf what_if;
   what_if.panel.effects = {{"static-beta-odd", "", "found"}};
   const auto panel_of = [&]() -> WhatIfPanel {
-    return item<WhatIfPanel>(diagnosis_report(diagnosis, model(), &what_if), "What if");
+    return item<WhatIfPanel>(diagnosis_report(diagnosis, named_model(), &what_if), "What if");
   };
   EXPECT_EQ(panel_of().noise, 0.06);
   EXPECT_EQ(panel_of().noise_label, "noise with all findings");
-  EXPECT_TRUE(
-      std::holds_alternative<WhatIfPanel>(diagnosis_report(diagnosis, model(), &what_if).items.front()));
+  EXPECT_TRUE(std::holds_alternative<WhatIfPanel>(
+      diagnosis_report(diagnosis, named_model(), &what_if).items.front()));
   diagnosis.findings.clear();
   diagnosis.verdict = Verdict::silent;
   EXPECT_EQ(panel_of().noise, 0.081);
@@ -411,7 +411,7 @@ TEST(DiagnosisReport, WhatIfHasTheNoiseOfTheReport) {
 }
 
 TEST(DiagnosisReport, SilentDiagnosisListsUpperLimits) {
-  const Report report = diagnosis_report(silent(), model());
+  const Report report = diagnosis_report(silent(), named_model());
   EXPECT_EQ(report.title, "No missing effect is detectable on these flights");
   EXPECT_THAT(report.summary, Contains(HasSubstr("41")));
   EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
@@ -468,7 +468,7 @@ TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
       values->assign(values->size(), nan);
     one.added.clear();
   }
-  const std::string words = split_words(diagnosis_report(diagnosis, model()));
+  const std::string words = split_words(diagnosis_report(diagnosis, named_model()));
   EXPECT_THAT(words, HasSubstr("b1 unknown and b2 = 1 hPa"));
 }
 
@@ -479,13 +479,13 @@ TEST(DiagnosisReport, NamesAreEscaped) {
   diagnosis.findings.front().worst_flight = diagnosis.findings.front().evidence.front().flight =
       samples->name;
   diagnosis.findings.front().advice.sentence = "<b>fly</b>";
-  const std::string words = split_words(diagnosis_report(diagnosis, model()));
+  const std::string words = split_words(diagnosis_report(diagnosis, named_model()));
   EXPECT_THAT(words, Not(AnyOf(HasSubstr("<i>"), HasSubstr("<b>"))));
   EXPECT_THAT(words, HasSubstr("&lt;i&gt;rf&amp;01&lt;/i&gt;"));
 }
 
 TEST(ImprovementReport, ShowsTheSteps) {
-  const Report report = improvement_report(improvement(), model());
+  const Report report = improvement_report(improvement(), named_model());
   EXPECT_EQ(report.title, "2 effects make the model better");
   EXPECT_EQ(report.subtitle, "Improvement of C-130 PSFD 2011 against LAMS");
   EXPECT_THAT(report.summary, Contains(HasSubstr("held-out rms residual becomes 0.161 hPa (fitted: 0.196")));
@@ -517,7 +517,7 @@ TEST(ImprovementReport, StartsWithInputModelAndShowsHeldOutFlights) {
   FlightDiagnosis later = made.steps[0].diagnosis.flights.front();
   later.samples = renamed(*later.samples, "later.nc");
   made.flights.push_back(improved(later, 0));
-  const Report report = improvement_report(made, model());
+  const Report report = improvement_report(made, named_model());
   const auto& steps = item<DotPanel>(report, "Rms of each step");
   EXPECT_EQ(steps.series.back(), "held out: later.nc");
   EXPECT_EQ(steps.rows.front().label, "input model");
@@ -544,7 +544,7 @@ TEST(ImprovementReport, UnusedFlightDoesNotShiftTheOthers) {
     made.flights.push_back(improved(one, one.before.size()));
   made.flights[1].best.assign(made.flights[1].best.size(), 1.0);
   made.flights[2].best.assign(made.flights[2].best.size(), 2.0);
-  const Report report = improvement_report(made, model());
+  const Report report = improvement_report(made, named_model());
   EXPECT_THAT(report.flight_names, ElementsAre("rf01", "rf02"));
   const auto best = std::find_if(report.columns.begin(), report.columns.end(),
                                  [](const ReportColumn& column) { return column.name == "model-best"; });
@@ -556,7 +556,7 @@ TEST(ImprovementReport, UnusedFlightDoesNotShiftTheOthers) {
 TEST(ImprovementReport, StatesWhatIsNotInTheFit) {
   Improvement made = improvement();
   made.holdout_is_flights = false;
-  const Report report = improvement_report(made, model());
+  const Report report = improvement_report(made, named_model());
   const auto& steps = item<DotPanel>(report, "Rms of each step");
   EXPECT_EQ(steps.series.back(), "held out, five-fold");
   const auto& table = item<ReportTable>(report, "Steps of the selection");
@@ -569,7 +569,7 @@ TEST(ImprovementReport, HeldOutPartDiffersFromHeldOutFlight) {
   for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights)
     made.flights.push_back(improved(one, one.before.size() / 2));
   const std::string name = made.flights.front().samples->name;
-  const Report report = improvement_report(made, model());
+  const Report report = improvement_report(made, named_model());
   EXPECT_THAT(report.flight_names, Not(Contains(HasSubstr("held out"))));
   const auto& steps = item<DotPanel>(report, "Rms of each step");
   EXPECT_THAT(steps.series.back(), HasSubstr("the last part of " + name));
@@ -585,7 +585,7 @@ TEST(DiagnosisReport, SlopeIsNullWithoutALine) {
 }
 
 TEST(ImprovementReport, EachStepHasAPageAndPictures) {
-  const Report report = improvement_report(improvement(), model());
+  const Report report = improvement_report(improvement(), named_model());
   const auto& page = item<ReportText>(report, "Step 1: static-beta-odd");
   EXPECT_THAT(page.paragraphs, Contains(HasSubstr("The flights give b1 = -0.00171 +- 0.00012")));
   EXPECT_EQ(page.paragraphs.back(), "In the best model b1 = -0.00169 +- 0.00011.");
@@ -602,7 +602,7 @@ TEST(ImprovementReport, EachStepHasAPageAndPictures) {
 TEST(ImprovementReport, ImprovementWithoutAnAddedEffectIsReported) {
   Improvement made = improvement();
   made.steps.resize(1);
-  const Report report = improvement_report(made, model());
+  const Report report = improvement_report(made, named_model());
   EXPECT_EQ(report.title, "No effect makes the model better");
   split_words(report);
   made.steps[0] = {};

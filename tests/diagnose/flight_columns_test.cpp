@@ -13,7 +13,7 @@ namespace {
 
 /// Three records, the second without a residual, and two columns each of base and candidates, of which the
 /// last has no values.
-FlightColumns flight() {
+FlightColumns three_records() {
   FlightColumns columns;
   columns.given = {10.0, nan, 30.0};
   columns.base.resize(3, 2);
@@ -24,17 +24,17 @@ FlightColumns flight() {
 }
 
 TEST(SumOfColumns, EqualsColumnsTimesCoefficients) {
-  EXPECT_THAT(sum_of_columns(flight(), Eigen::Vector4d(1.0, 2.0, 4.0, 0.0)),
+  EXPECT_THAT(sum_of_columns(three_records(), Eigen::Vector4d(1.0, 2.0, 4.0, 0.0)),
               testing::ElementsAre(7.0, 11.0, 19.0));
 }
 
 TEST(SumOfColumns, MissingValueOfAUsedColumnIsMissing) {
-  for (const double value : sum_of_columns(flight(), Eigen::Vector4d(1.0, 2.0, 4.0, 1.0)))
+  for (const double value : sum_of_columns(three_records(), Eigen::Vector4d(1.0, 2.0, 4.0, 1.0)))
     EXPECT_TRUE(std::isnan(value));
 }
 
 TEST(ResidualAfter, IsTheGivenResidualMinusTheSum) {
-  const std::vector<double> residual = residual_after(flight(), Eigen::Vector4d(1.0, 2.0, 4.0, 0.0));
+  const std::vector<double> residual = residual_after(three_records(), Eigen::Vector4d(1.0, 2.0, 4.0, 0.0));
   EXPECT_EQ(residual[0], 3.0);
   EXPECT_TRUE(std::isnan(residual[1]));
   EXPECT_EQ(residual[2], 11.0);

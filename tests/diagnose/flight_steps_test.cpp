@@ -5,31 +5,34 @@
 
 #include <random>
 
+#include "support/bins.hpp"
+
 namespace pcor::internal {
 namespace {
 
-constexpr std::size_t rows = 300;
-constexpr double step = 4.0;  // s: every record is a bin
+using test::bin_step;
+
+constexpr std::size_t record_count = 300;
 
 /// White noise of 0.2 hPa around means, and a column of the model that all flights share.
-struct Flights {
+struct FlightsWithSteps {
   std::vector<Binning> bins;
   std::vector<Eigen::MatrixXd> columns;
   std::vector<Eigen::VectorXd> residuals;
   NoiseModel noise;
 
-  Flights(const std::vector<double>& means, unsigned seed) {
+  FlightsWithSteps(const std::vector<double>& means, unsigned seed) {
     std::mt19937_64 engine(seed);
     std::normal_distribution<double> normal;
     for (std::size_t f = 0; f < means.size(); ++f) {
-      std::vector<double> time(rows);
-      for (std::size_t i = 0; i < rows; ++i)
-        time[i] = 1e5 * static_cast<double>(f) + step * static_cast<double>(i);
-      bins.emplace_back(std::vector<double>(rows, 0.0), time, step);
-      columns.emplace_back(Eigen::MatrixXd::Ones(rows, 1));
+      std::vector<double> time(record_count);
+      for (std::size_t i = 0; i < record_count; ++i)
+        time[i] = 1e5 * static_cast<double>(f) + bin_step * static_cast<double>(i);
+      bins.emplace_back(std::vector<double>(record_count, 0.0), time, bin_step);
+      columns.emplace_back(Eigen::MatrixXd::Ones(record_count, 1));
       residuals.emplace_back(
-          Eigen::VectorXd::NullaryExpr(rows, [&] { return means[f] + 0.2 * normal(engine); }));
-      noise.level.emplace_back(Eigen::VectorXd::Constant(rows, 0.2));
+          Eigen::VectorXd::NullaryExpr(record_count, [&] { return means[f] + 0.2 * normal(engine); }));
+      noise.level.emplace_back(Eigen::VectorXd::Constant(record_count, 0.2));
     }
     noise.coefficients = {0.0};
   }
@@ -40,7 +43,7 @@ struct Flights {
 };
 
 TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
-  const std::vector<FlightOffset> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
+  const std::vector<FlightOffset> steps = FlightsWithSteps({0.0, 0.0, 0.15, 0.0}, 1).steps();
   ASSERT_EQ(steps.size(), 4U);
   // The error of a mean of 300 values of 0.2 against that of 900.
   EXPECT_NEAR(steps[2].standard_error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
@@ -51,7 +54,7 @@ TEST(MeanSteps, DifferingFlightIsFoundWithItsStep) {
 }
 
 TEST(MeanSteps, TwoFlightsGiveOneStep) {
-  const std::vector<FlightOffset> steps = Flights({0.1, -0.1}, 2).steps();
+  const std::vector<FlightOffset> steps = FlightsWithSteps({0.1, -0.1}, 2).steps();
   EXPECT_NEAR(steps[1].size, -0.2, 4.0 * steps[1].standard_error);
   EXPECT_LT(steps[1].p_value, 1e-6);
   EXPECT_EQ(steps[0].p_value, 1.0) << "the first above the second is the same difference";
@@ -60,7 +63,7 @@ TEST(MeanSteps, TwoFlightsGiveOneStep) {
 // A model with a column that is 1 in the second flight and those after it, as that of a step on a date is.
 TEST(MeanSteps, ModelledStepIsNotReported) {
   for (const std::vector<double>& means : {std::vector<double>{0.0, 0.4}, {0.0, 0.4, 0.4}}) {
-    Flights flights(means, 8);
+    FlightsWithSteps flights(means, 8);
     for (std::size_t f = 0; f < means.size(); ++f) {
       flights.columns[f].conservativeResize(Eigen::NoChange, 2);
       flights.columns[f].col(1).setConstant(f == 0 ? 0.0 : 1.0);
@@ -71,20 +74,20 @@ TEST(MeanSteps, ModelledStepIsNotReported) {
 
 // Least squares of the model's columns and a constant of each flight together, by another way.
 TEST(MeanSteps, MatchLeastSquaresWithFlightConstants) {
-  Flights flights({0.0, 0.2, -0.1, 0.05, 0.0}, 9);
+  FlightsWithSteps flights({0.0, 0.2, -0.1, 0.05, 0.0}, 9);
   std::mt19937_64 engine(10);
   std::normal_distribution<double> normal;
   const auto count = static_cast<Eigen::Index>(flights.bins.size());
   constexpr Eigen::Index columns = 2;
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count * rows, columns + count);
-  Eigen::VectorXd right(count * rows);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count * record_count, columns + count);
+  Eigen::VectorXd right(count * record_count);
   for (Eigen::Index f = 0; f < count; ++f) {
     const auto flight = static_cast<std::size_t>(f);
     flights.columns[flight] = Eigen::MatrixXd::NullaryExpr(
-        rows, columns, [&] { return 0.3 * static_cast<double>(f) + normal(engine); });
-    all.block(f * rows, 0, rows, columns) = flights.columns[flight];
-    all.block(f * rows, columns + f, rows, 1).setOnes();
-    right.segment(f * rows, rows) = flights.residuals[flight];
+        record_count, columns, [&] { return 0.3 * static_cast<double>(f) + normal(engine); });
+    all.block(f * record_count, 0, record_count, columns) = flights.columns[flight];
+    all.block(f * record_count, columns + f, record_count, 1).setOnes();
+    right.segment(f * record_count, record_count) = flights.residuals[flight];
   }
   const Eigen::VectorXd means = all.colPivHouseholderQr().solve(right).tail(count);
   const std::vector<FlightOffset> steps = flights.steps();
@@ -95,16 +98,16 @@ TEST(MeanSteps, MatchLeastSquaresWithFlightConstants) {
 }
 
 TEST(MeanSteps, WithoutCoefficientsStepsAreDifferencesOfMeans) {
-  Flights flights({0.0, 0.3}, 11);
-  for (Eigen::MatrixXd& columns : flights.columns) columns.resize(rows, 0);
+  FlightsWithSteps flights({0.0, 0.3}, 11);
+  for (Eigen::MatrixXd& columns : flights.columns) columns.resize(record_count, 0);
   EXPECT_NEAR(flights.steps()[1].size, flights.residuals[1].mean() - flights.residuals[0].mean(), 1e-12);
 }
 
-TEST(MeanSteps, OneFlightGivesNoSteps) { EXPECT_EQ(Flights({0.3}, 3).steps().front().p_value, 1.0); }
+TEST(MeanSteps, OneFlightGivesNoSteps) { EXPECT_EQ(FlightsWithSteps({0.3}, 3).steps().front().p_value, 1.0); }
 
 // A drift of that size makes means differ as much.
 TEST(MeanSteps, DriftExplainsAllSteps) {
-  Flights flights({0.1, -0.1}, 4);
+  FlightsWithSteps flights({0.1, -0.1}, 4);
   flights.noise.slow = {0.0, 0.0, 0.0, 0.2};
   EXPECT_GT(flights.steps()[1].p_value, 0.05);
 }
@@ -118,7 +121,7 @@ TEST(MeanSteps, RandomScatterIsNotSignificant) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::vector<double> means(6);
     for (double& mean : means) mean = 0.1 * normal(engine);
-    const std::vector<FlightOffset> steps = Flights(means, 100 + seed).steps();
+    const std::vector<FlightOffset> steps = FlightsWithSteps(means, 100 + seed).steps();
     claims +=
         std::any_of(steps.begin(), steps.end(), [](const FlightOffset& each) { return each.p_value < 0.01; });
   }

@@ -4,29 +4,26 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "diagnose/analysis.hpp"
 #include "diagnose/flight_columns.hpp"
+#include "support/short_flight.hpp"
 #include "support/temporary_directory.hpp"
 
 using pcor::ModelDefinition;
 using pcor::References;
+using pcor::test::laser_model;
 using namespace pcor::internal;
 
 namespace {
 
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-
 /// A simulated flight of two hours. @param effect more of the scenario: hidden, or noise
-std::filesystem::path flight(int seed, const std::string& effect = "") {
+std::filesystem::path two_hour_flight(int seed, const std::string& effect = "") {
   static const pcor::test::TemporaryDirectory directory;
-  std::ifstream file(scenarios / "c130-eq18.toml");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text = pcor::test::scenario_text("c130-eq18");
   const std::size_t position = text.find("\nseed = ");
   text.replace(position, text.find('\n', position + 1) - position, "\nseed = " + std::to_string(seed));
   const std::filesystem::path path =
@@ -40,20 +37,19 @@ const std::vector<std::string> tested{"static-mach3", "static-beta-odd", "static
                                       "static-lag",   "roll-static",     "load-factor",
                                       "pitot-angle",  "qcf-zero",        "psfd-bias"};
 
-ModelDefinition law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
-
 References references_of(bool with_height) {
-  References references{pcor::wind_reference(law())};
-  if (with_height) references.push_back(pcor::height_reference(law()));
+  References references{pcor::wind_reference(laser_model())};
+  if (with_height) references.push_back(pcor::height_reference(laser_model()));
   return references;
 }
 
 /// Decrease of chi2 by each tested effect, with law and nuisances fitted.
 std::map<std::string, double> gains(const std::filesystem::path& path, bool with_height) {
   const pcor::FlightSet flights({path});
-  CandidateSet set = find_candidates(law(), {}, flights, in_order_of_diagnosis(references_of(with_height)));
+  CandidateSet set =
+      find_candidates(laser_model(), {}, flights, in_order_of_diagnosis(references_of(with_height)));
   pcor::Notes notes;
-  TeamColumns columns = columns_of_flights(flights, 1, law(), set, {}, notes);
+  TeamColumns columns = columns_of_flights(flights, 1, laser_model(), set, {}, notes);
   leave_out_empty(columns);
   drop_untestable(set, columns);
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates));
@@ -73,7 +69,7 @@ TEST(GpsDiagnosis, GainsWithoutAnEffectAreInsignificant) {
     double sum = 0.0;
     double count = 0.0;
     for (const int seed : {1, 2, 3, 4}) {
-      for (const auto& [name, gain] : gains(flight(seed), with_height)) {
+      for (const auto& [name, gain] : gains(two_hour_flight(seed), with_height)) {
         sum += gain;
         count += 1.0;
         // One of 36 numbers of chi2 with one degree is above 13 in 1 % of the cases.
@@ -94,7 +90,7 @@ TEST(GpsDiagnosis, HiddenEffectGainsMoreThanOthers) {
        {Case{"static-beta-odd", "b1 = 0.01", false}, Case{"roll-static", "defect = 0.5", true}}) {
     const std::string effect = "\n[[effect]]\nid = \"" + hidden.id + "\"\n" + hidden.parameter + "\n";
     const int seed = hidden.with_height ? 21 : 26;
-    for (const auto& [name, gain] : gains(flight(seed, effect), hidden.with_height)) {
+    for (const auto& [name, gain] : gains(two_hour_flight(seed, effect), hidden.with_height)) {
       if (name == hidden.id)
         EXPECT_GT(gain, 200.0);
       else
@@ -105,7 +101,8 @@ TEST(GpsDiagnosis, HiddenEffectGainsMoreThanOthers) {
 
 TEST(GpsDiagnosis, CompleteModelIsSilent) {
   for (const bool with_height : {false, true}) {
-    const pcor::Diagnosis diagnosis = pcor::diagnose({flight(4)}, law(), references_of(with_height));
+    const pcor::Diagnosis diagnosis =
+        pcor::diagnose({two_hour_flight(4)}, laser_model(), references_of(with_height));
     EXPECT_EQ(diagnosis.verdict, pcor::Verdict::silent);
   }
 }
@@ -114,13 +111,15 @@ TEST(GpsDiagnosis, CompleteModelIsSilent) {
 // like a load factor, and like a static transducer that is 5 hPa off.
 TEST(GpsDiagnosis, WarmThermometerIsTheOnlyFinding) {
   const std::string hot = "\n[noise]\nTTRR = { rms = 0.03, bias = 2.0 }\n";
-  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(5, hot)}, law(), {pcor::height_reference(law())});
+  const pcor::Diagnosis diagnosis =
+      pcor::diagnose({two_hour_flight(5, hot)}, laser_model(), {pcor::height_reference(laser_model())});
   for (const pcor::Finding& finding : diagnosis.findings) EXPECT_EQ(finding.effect.id, "temp-offset");
 }
 
 TEST(GpsDiagnosis, FindsHiddenEffect) {
   const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
-  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references_of(false));
+  const pcor::Diagnosis diagnosis =
+      pcor::diagnose({two_hour_flight(26, effect)}, laser_model(), references_of(false));
   ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
   const pcor::CoefficientEstimate& estimate = diagnosis.findings[0].estimates.front();
@@ -131,8 +130,8 @@ TEST(GpsDiagnosis, FindsHiddenEffect) {
 
 TEST(GpsDiagnosis, LaserAndWindFindOneEffectOnly) {
   const std::string effect = "\n[[effect]]\nid = \"static-beta-odd\"\nb1 = 0.01\n";
-  const References references{pcor::lams_reference(), pcor::wind_reference(law())};
-  const pcor::Diagnosis diagnosis = pcor::diagnose({flight(26, effect)}, law(), references);
+  const References references{pcor::lams_reference(), pcor::wind_reference(laser_model())};
+  const pcor::Diagnosis diagnosis = pcor::diagnose({two_hour_flight(26, effect)}, laser_model(), references);
   ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
   EXPECT_EQ(diagnosis.findings[0].effect.id, "static-beta-odd");
   const pcor::CoefficientEstimate& estimate = diagnosis.findings[0].estimates.front();

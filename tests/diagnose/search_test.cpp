@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "numerics/chi_squared.hpp"
+#include "support/bins.hpp"
 
 using namespace pcor::internal;
+using pcor::test::bin_step;
 
 using pcor::Bounds;
 using testing::AnyOf;
@@ -21,7 +23,6 @@ using testing::UnorderedElementsAre;
 
 namespace {
 
-constexpr double step = 4.0;  // s: every record is a bin
 constexpr Eigen::Index base = 2;
 
 /// Columns with memory, a base of a constant and a line, and a residual of noise to which effects are added.
@@ -37,7 +38,7 @@ struct Problem {
   /// residual, hPa
   Problem(Eigen::Index rows, Eigen::Index candidates, unsigned seed, double common = 0.0, double offset = 0.0)
       : columns(rows, base + candidates), residual(rows) {
-    bins.emplace_back(std::vector<double>(static_cast<std::size_t>(rows), 0.0), time(rows), step);
+    bins.emplace_back(std::vector<double>(static_cast<std::size_t>(rows), 0.0), time(rows), bin_step);
     std::mt19937_64 engine(seed);
     std::normal_distribution<double> normal;
     const auto series = [&](double memory) {
@@ -61,7 +62,7 @@ struct Problem {
 
   static std::vector<double> time(Eigen::Index rows) {
     std::vector<double> time(static_cast<std::size_t>(rows));
-    for (std::size_t i = 0; i < time.size(); ++i) time[i] = step * static_cast<double>(i);
+    for (std::size_t i = 0; i < time.size(); ++i) time[i] = bin_step * static_cast<double>(i);
     return time;
   }
 
@@ -192,7 +193,7 @@ TEST(Search, AnEffectThatAnotherReferenceSeesIsNotAnErrorOfLinearity) {
   };
   std::vector<Binning> bins;
   for (int half = 0; half < 2; ++half)
-    bins.emplace_back(std::vector<double>(300, 0.0), problem.time(300), step);
+    bins.emplace_back(std::vector<double>(300, 0.0), problem.time(300), bin_step);
   NoiseModel noise = problem.noise;
   noise.level = std::vector<Eigen::VectorXd>(2, Eigen::VectorXd::Constant(300, 0.5));
   const WhitenedSystem scores =

@@ -14,10 +14,12 @@
 #include <vector>
 
 #include <pcor/effects/catalogue.hpp>
+#include "support/bins.hpp"
 
 namespace pcor::internal {
 namespace {
 
+using test::bin_step;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -157,11 +159,10 @@ TEST(Separation, RegimeWithLittleInformationIsNotAdvised) {
     EXPECT_EQ(best_plan(nothing, rivalry_of(rows, size)).regime, nullptr) << size;
 }
 
-constexpr double step = 4.0;  // s: every record is a bin
 constexpr Eigen::Index width = 3;
 
 /// Flights of 1000 s, with rows at random.
-class Flights {
+class FlownFlights {
  public:
   void fly(const std::string& name, const std::vector<Interval>& intervals, double masked_from = 1000.0,
            std::size_t reference = 0) {
@@ -169,11 +170,11 @@ class Flights {
     auto samples = std::make_shared<FlightSamples>();
     samples->name = name;
     samples->intervals = intervals;
-    for (double time = 0.0; time < 1000.0; time += step) {
+    for (double time = 0.0; time < 1000.0; time += bin_step) {
       samples->time.push_back(time);
       given.push_back(time < masked_from ? 0.0 : std::numeric_limits<double>::quiet_NaN());
     }
-    bins_.emplace_back(given, samples->time, step);
+    bins_.emplace_back(given, samples->time, bin_step);
     FlightColumns& flight = columns_.emplace_back();
     flight.samples = samples;
     flight.reference = reference;
@@ -211,7 +212,7 @@ const Interval ground{Regime::ground, 0.0, 100.0};
 const Interval climb{Regime::climb, 100.0, 900.0};
 
 TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
-  Flights flights;
+  FlownFlights flights;
   flights.fly("first.nc", {ground, {Regime::level, 100.0, 900.0}, {Regime::yaw_manoeuvre, 200.0, 320.0}});
   flights.fly("second.nc",
               {ground, {Regime::yaw_manoeuvre, 200.0, 300.0}, {Regime::yaw_manoeuvre, 500.0, 580.0}});
@@ -227,7 +228,7 @@ TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
 }
 
 TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
-  Flights flights;
+  FlownFlights flights;
   flights.fly("first.nc", {ground, climb, {Regime::turn, 200.0, 400.0}});
   const std::vector<FlownRegime> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 2U);
@@ -239,7 +240,7 @@ TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
 }
 
 TEST(FlownRegimes, RegimesWithoutSamplesAreOmitted) {
-  Flights flights;
+  FlownFlights flights;
   flights.fly("first.nc", {ground, climb, {Regime::circle, 700.0, 850.0}}, 600.0);
   const std::vector<FlownRegime> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 1U);
@@ -247,7 +248,7 @@ TEST(FlownRegimes, RegimesWithoutSamplesAreOmitted) {
 }
 
 TEST(FlownRegimes, FlightWithTwoReferencesCountsOnce) {
-  Flights flights;
+  FlownFlights flights;
   flights.fly("first.nc", {climb});
   flights.fly("first.nc", {climb}, 1000.0, 1);
   const std::vector<FlownRegime> regimes = flights.regimes();

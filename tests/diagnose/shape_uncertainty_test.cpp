@@ -7,30 +7,32 @@
 #include <memory>
 #include <vector>
 
+#include "support/bins.hpp"
+
 using namespace pcor::internal;
 using pcor::Quantity;
+using pcor::test::bin_step;
 
 namespace {
 
-constexpr Eigen::Index rows = 200;
-constexpr double step = 4.0;  // s: every record is a bin
+constexpr Eigen::Index row_count = 200;
 
 /// A flight with one column that varies slowly, in air whose pressures vary.
 struct Example {
   FlightColumns flight;
   BinnedFlights binned;
-  Eigen::VectorXd column{rows};
-  Eigen::VectorXd dynamic_pressure{rows};
+  Eigen::VectorXd column{row_count};
+  Eigen::VectorXd dynamic_pressure{row_count};
 
   Example() {
-    std::vector<double> time(rows);
+    std::vector<double> time(row_count);
     auto samples = std::make_shared<pcor::FlightSamples>();
-    std::vector<double> dynamic(rows);
-    std::vector<double> still(rows);
-    for (Eigen::Index i = 0; i < rows; ++i) {
+    std::vector<double> dynamic(row_count);
+    std::vector<double> still(row_count);
+    for (Eigen::Index i = 0; i < row_count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double phase = static_cast<double>(i) / 40.0;
-      time[k] = step * static_cast<double>(i);
+      time[k] = bin_step * static_cast<double>(i);
       column[i] = std::sin(phase) + 0.4;
       dynamic_pressure[i] = dynamic[k] = 60.0 + 20.0 * std::cos(0.37 * phase);
       still[k] = 700.0;
@@ -39,7 +41,7 @@ struct Example {
     samples->model.columns.emplace_back(Quantity::static_pressure, still);
     samples->time = time;
     flight.samples = samples;
-    binned.bins.emplace_back(std::vector<double>(rows, 0.0), time, step);
+    binned.bins.emplace_back(std::vector<double>(row_count, 0.0), time, bin_step);
     binned.columns.emplace_back(column);
   }
 
@@ -81,8 +83,8 @@ TEST(ShapeUncertainty, TheSlopesOnEitherSideOfZeroDiffer) {
   const double below = positive.select(1.0, ratio).minCoeff();
   EXPECT_NEAR(above - below, 2.0 * 0.3, 1e-12);
   // Each side has one ratio.
-  EXPECT_NEAR((ratio - positive.select(Eigen::ArrayXd::Constant(rows, above), below)).abs().maxCoeff(), 0.0,
-              1e-12);
+  EXPECT_NEAR((ratio - positive.select(Eigen::ArrayXd::Constant(row_count, above), below)).abs().maxCoeff(),
+              0.0, 1e-12);
 }
 
 TEST(ShapeUncertainty, EffectOfOneSignHasNoSecondSlope) {
@@ -100,9 +102,9 @@ TEST(ShapeUncertainty, ConstantPressureGivesAZeroColumn) {
 TEST(ShapeUncertainty, DelayColumnIsProportionalToTheRateOfChange) {
   const Example example;
   const Eigen::VectorXd found = example.uncertainty(1.0).col(4);
-  for (Eigen::Index i = 1; i + 1 < rows; ++i) {
-    const double rate = std::cos(static_cast<double>(i) / 40.0) / 40.0 / step;
-    EXPECT_NEAR(found[i], 0.15 * rate, 1e-3 * 0.15 / 40.0 / step) << i;  // second order in the step
+  for (Eigen::Index i = 1; i + 1 < row_count; ++i) {
+    const double rate = std::cos(static_cast<double>(i) / 40.0) / 40.0 / bin_step;
+    EXPECT_NEAR(found[i], 0.15 * rate, 1e-3 * 0.15 / 40.0 / bin_step) << i;  // second order in the step
   }
 }
 
@@ -114,6 +116,6 @@ TEST(ShapeUncertainty, ScalesWithTheEffect) {
 TEST(ShapeUncertainty, ZeroShiftColumnIsConstantAtTheEffectRms) {
   const Example example;
   const Eigen::VectorXd effect = 2.0 * example.column;
-  const double rms = std::sqrt(effect.squaredNorm() / static_cast<double>(rows));
-  EXPECT_TRUE(example.uncertainty(2.0).col(5).isApprox(Eigen::VectorXd::Constant(rows, rms), 1e-12));
+  const double rms = std::sqrt(effect.squaredNorm() / static_cast<double>(row_count));
+  EXPECT_TRUE(example.uncertainty(2.0).col(5).isApprox(Eigen::VectorXd::Constant(row_count, rms), 1e-12));
 }

@@ -12,14 +12,15 @@
 #include <string>
 #include <vector>
 
+#include "support/bins.hpp"
 #include "support/thread_team.hpp"
 
 using namespace pcor::internal;
+using pcor::test::bin_step;
 
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double step = 4.0;  // s: every record is a bin
 constexpr double memory = 0.5;
 
 std::vector<double> draws(std::size_t count, unsigned seed) {
@@ -78,8 +79,8 @@ struct Flight {
 
   Flight(std::size_t rows, std::size_t count, unsigned seed) {
     std::vector<double> time(rows);
-    for (std::size_t i = 0; i < rows; ++i) time[i] = step * static_cast<double>(i);
-    bins.emplace_back(std::vector<double>(rows, 0.0), time, step);
+    for (std::size_t i = 0; i < rows; ++i) time[i] = bin_step * static_cast<double>(i);
+    bins.emplace_back(std::vector<double>(rows, 0.0), time, bin_step);
     columns.emplace_back(Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(rows), 1));
     std::mt19937_64 engine(seed);
     std::normal_distribution<double> normal;
@@ -272,7 +273,7 @@ TEST(StructureTest, SlopeEqualsGeneralisedLeastSquares) {
   // The drift of the model is included in full: no variable is more likely with less of it.
   flight.noise.slow = {0.0, 0.4, 0.0, 0.0};
   for (Eigen::Index i = 0; i < 200; ++i)
-    flight.residuals[0][i] += std::sin(step * static_cast<double>(i) / 100.0);
+    flight.residuals[0][i] += std::sin(bin_step * static_cast<double>(i) / 100.0);
   const StructureTest test = flight.test();
   ASSERT_EQ(test.structures().size(), 1U);
   const Eigen::Index rows = 200;
@@ -281,7 +282,7 @@ TEST(StructureTest, SlopeEqualsGeneralisedLeastSquares) {
     for (Eigen::Index j = 0; j < rows; ++j)
       covariance(i, j) =
           0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory) +
-          0.16 * std::exp(-step * std::abs(static_cast<double>(i - j)) / slow_times[1]);
+          0.16 * std::exp(-bin_step * std::abs(static_cast<double>(i - j)) / slow_times[1]);
   }
   Eigen::MatrixXd columns(rows, 2);
   columns << Eigen::VectorXd::Ones(rows), as_vector(flight.variables[0]);
@@ -309,7 +310,7 @@ TEST_P(NoStructure, HasAFalseAlarmRateOfOnePercent) {
       double value = normal(engine);
       for (double& each : flight.residuals[0]) {
         each += size * value;
-        const double remembers = std::exp(-step / time);
+        const double remembers = std::exp(-bin_step / time);
         value = remembers * value + std::sqrt(1.0 - remembers * remembers) * normal(engine);
       }
     };
