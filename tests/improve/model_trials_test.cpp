@@ -4,21 +4,21 @@
 #include <pcor/roles/add_effects.hpp>
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "diagnose/rms.hpp"
+#include "support/data.hpp"
 #include "support/short_flight.hpp"
 
 namespace pcor::internal {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+using test::data_directory;
 
 /// The law of the flight, with the laser.
 ModelDefinition law() {
-  ModelDefinition file = read_model(data / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition file = read_model(data_directory / "models" / "c130-psfd-eq18.toml");
   file.variables.emplace(Quantity::attack, "ATTACK");
   file.variables.emplace(Quantity::sideslip, "SSLIP");
   file.variables.emplace(Quantity::lams_airspeed, "VLAMS");
@@ -114,7 +114,8 @@ TEST(Trials, StaticPressuresDifferByTheEffect) {
 
 TEST(Trials, CommonErrorsCancelInTotalPressureDifference) {
   const ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
-  const References total{total_pressure_reference(read_model(data / "models" / "c130-psfrd-eq18.toml"))};
+  const References total{
+      total_pressure_reference(read_model(data_directory / "models" / "c130-psfrd-eq18.toml"))};
   const ModelDefinition own = add_effects(law(), {loss});
   const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss.id}}}, total);
   const TrialFlight& only = flights.front();

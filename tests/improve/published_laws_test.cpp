@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/data.hpp"
 #include "support/short_flight.hpp"
 #include "support/test_name.hpp"
 
@@ -22,11 +23,11 @@ using testing::SizeIs;
 namespace pcor {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+using test::data_directory;
 
 /// The law on the variables of the flight: those that only other aircraft have get their like, and the laser
 /// and its angle of attack join.
-ModelDefinition law(const std::filesystem::path& path) {
+ModelDefinition read_law(const std::filesystem::path& path) {
   const std::map<std::string, std::string> alike{
       {"PSF", "PSFD"}, {"PSTF", "PSFRD"}, {"QCTF", "QCFR"}, {"TTHR1", "TTRR"}, {"RTH1", "RTF1"}};
   ModelDefinition file = read_model(path);
@@ -42,7 +43,7 @@ class PublishedLaw : public testing::TestWithParam<std::filesystem::path> {};
 
 std::vector<std::filesystem::path> laws() {
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(data / "models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(data_directory / "models")) {
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
@@ -52,7 +53,7 @@ std::vector<std::filesystem::path> laws() {
 TEST(PublishedLaws, ThereAreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
 
 TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
-  const ModelDefinition file = law(GetParam());
+  const ModelDefinition file = read_law(GetParam());
   const FlightSet flight{test::short_flight()};
   const std::shared_ptr<const Reference> laser = lams_reference();
   const std::shared_ptr<const Reference> pressure = read_reference("pressure:PS_A", file);
@@ -70,7 +71,7 @@ TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
 }
 
 TEST(Laws, PressureReferenceRequiresNoThermometer) {
-  ModelDefinition file = law(data / "models" / "c130-psfd-eq18.toml");
+  ModelDefinition file = read_law(data_directory / "models" / "c130-psfd-eq18.toml");
   for (const Quantity role : {Quantity::recovery_temperature, Quantity::ambient_temperature,
                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})
     file.variables.erase(role);

@@ -53,7 +53,7 @@ constexpr std::array<double, 3> coefficients{0.004127875, 0.021279816, 0.0308496
 
 constexpr double static_offset = 0.1, dynamic_offset = 0.08;  // hPa
 constexpr double thermometer_offset = 0.3;                    // K
-const std::map<std::string, double> noise{
+const std::map<std::string, double> sensor_noise{
     {"PSFD", 0.05}, {"QCF", 0.05}, {"TTRR", 0.1}, {"ADIFR", 0.03}, {"QCR", 0.03}};
 
 ModelDefinition model() {
@@ -94,7 +94,7 @@ id = "temp-offset"
   const std::array<double, 3> offsets{static_offset, dynamic_offset, thermometer_offset};
   for (std::size_t i = 0; i < 3; ++i) file.fits[3 + i][0] = {true, offsets[i], {}};
   for (const auto& [role, variable] : file.variables) {
-    if (const auto size = noise.find(variable); size != noise.end())
+    if (const auto size = sensor_noise.find(variable); size != sensor_noise.end())
       file.uncertainty.roles[role] = size->second;
   }
   return parse_model(write_model(file), "model.toml");
@@ -114,7 +114,7 @@ Scenario scenario_of(std::uint64_t seed) {
   scenario.systems[0].law.a0 = law[0];
   scenario.systems[0].law.a1 = law[1];
   scenario.systems[0].law.a2 = law[2];
-  for (const auto& [variable, size] : noise) scenario.noise[variable] = {size, 0.0, 0.0, 0.0};
+  for (const auto& [variable, size] : sensor_noise) scenario.noise[variable] = {size, 0.0, 0.0, 0.0};
   scenario.noise["PSFD"].bias = static_offset * normal(engine);
   scenario.noise["QCF"].bias = dynamic_offset * normal(engine);
   scenario.noise["TTRR"].bias = thermometer_offset * normal(engine);
@@ -124,10 +124,10 @@ Scenario scenario_of(std::uint64_t seed) {
 struct Compared {
   std::string result, truth, unit;
 };
-const std::array<Compared, 4> compared{{{"PSXC", "TRUE_PS", "hPa"},
-                                        {"QCXC", "TRUE_QC", "hPa"},
-                                        {"ATX", "TRUE_AT", "degC"},
-                                        {"TASX", "TRUE_TAS", "m/s"}}};
+const std::array<Compared, 4> compared_results{{{"PSXC", "TRUE_PS", "hPa"},
+                                                {"QCXC", "TRUE_QC", "hPa"},
+                                                {"ATX", "TRUE_AT", "degC"},
+                                                {"TASX", "TRUE_TAS", "m/s"}}};
 
 struct Shares {
   std::size_t count = 0, within_one = 0, within_two = 0;
@@ -149,21 +149,24 @@ std::vector<std::size_t> samples_of(const SimulationSummary& summary) {
 TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
   const test::TemporaryDirectory directory;
   const ModelDefinition file = model();
-  std::array<Shares, compared.size()> shares{};
+  std::array<Shares, compared_results.size()> shares{};
   Shares all;
   const std::size_t flights = test::number_of_seeds();
   for (std::size_t seed = 1; seed <= flights; ++seed) {
     const SimulationSummary summary = simulate_flight(scenario_of(seed), directory / "in.nc");
     process_flight(directory / "in.nc", file, directory / "out.nc");
     const Flight recorded(directory / "in.nc"), corrected(directory / "out.nc");
-    for (std::size_t i = 0; i < compared.size(); ++i) {
-      const std::vector<double> values = test::values_of(corrected, compared[i].result, compared[i].unit);
-      const std::vector<double> stated = test::values_of(corrected, compared[i].result + "_uncertainty",
-                                                         compared[i].unit == "degC" ? "K" : compared[i].unit);
-      const std::vector<double> truth = test::values_of(recorded, compared[i].truth, compared[i].unit);
+    for (std::size_t i = 0; i < compared_results.size(); ++i) {
+      const std::vector<double> values =
+          test::values_of(corrected, compared_results[i].result, compared_results[i].unit);
+      const std::vector<double> stated =
+          test::values_of(corrected, compared_results[i].result + "_uncertainty",
+                          compared_results[i].unit == "degC" ? "K" : compared_results[i].unit);
+      const std::vector<double> truth =
+          test::values_of(recorded, compared_results[i].truth, compared_results[i].unit);
       for (const std::size_t sample : samples_of(summary)) {
         const double z = std::abs(values[sample] - truth[sample]) / stated[sample];
-        ASSERT_FALSE(std::isnan(z)) << compared[i].result << " of flight " << seed;
+        ASSERT_FALSE(std::isnan(z)) << compared_results[i].result << " of flight " << seed;
         for (Shares* const each : {&shares[i], &all}) {
           ++each->count;
           each->within_one += z <= 1.0 ? 1 : 0;
@@ -183,11 +186,11 @@ TEST(Coverage, SharesWithinOneAndTwoSigmaAreNormal) {
   };
   EXPECT_NEAR(share(all.within_one, all.count), 0.683, tolerance(0.683, 0.04));
   EXPECT_NEAR(share(all.within_two, all.count), 0.954, tolerance(0.954, 0.02));
-  for (std::size_t i = 0; i < compared.size(); ++i) {
-    RecordProperty(compared[i].result + "_within_one",
+  for (std::size_t i = 0; i < compared_results.size(); ++i) {
+    RecordProperty(compared_results[i].result + "_within_one",
                    std::to_string(share(shares[i].within_one, shares[i].count)));
     EXPECT_NEAR(share(shares[i].within_one, shares[i].count), 0.683, 2.0 * tolerance(0.683, 0.04))
-        << compared[i].result;
+        << compared_results[i].result;
   }
 }
 

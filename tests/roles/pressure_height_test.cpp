@@ -15,7 +15,7 @@ namespace {
 using Kind = HeightEvidence::Kind;
 
 /// A climb from 900 to 800 hPa, in hPa.
-std::vector<double> pressures() {
+std::vector<double> climb_pressures() {
   std::vector<double> all;
   for (int i = 0; i < 500; ++i) all.push_back(900.0 - 0.2 * i);
   return all;
@@ -23,27 +23,27 @@ std::vector<double> pressures() {
 
 TEST(PressureHeight, PressureAltitudeIsDetected) {
   std::vector<double> height;
-  for (const double pressure : pressures()) height.push_back(pressure_altitude(pressure));
-  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::pressure_altitude);
+  for (const double pressure : climb_pressures()) height.push_back(pressure_altitude(pressure));
+  EXPECT_EQ(compare_height(height, climb_pressures()).kind, Kind::pressure_altitude);
   // In steps of 10 ft, whose rounding is 0.1 hPa rms.
   for (double& each : height) each = 3.048 * std::round(each / 3.048);
-  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::pressure_altitude);
+  EXPECT_EQ(compare_height(height, climb_pressures()).kind, Kind::pressure_altitude);
 }
 
 TEST(PressureHeight, NonstandardWeatherIndicatesGpsHeight) {
   std::vector<double> height;
   // A high of 5 hPa adds 45 m, and air 3 % warmer than the standard adds 30 to 60 m: 7 to 10 hPa together.
-  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
-  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::gps);
+  for (const double pressure : climb_pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
+  EXPECT_EQ(compare_height(height, climb_pressures()).kind, Kind::gps);
 }
 
 TEST(PressureHeight, SlopeShowsAWrongUnit) {
   std::vector<double> height;
-  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
+  for (const double pressure : climb_pressures()) height.push_back(1.03 * pressure_altitude(pressure - 5.0));
   const auto problem_of_scaled = [&](double factor) {
     std::vector<double> scaled = height;
     for (double& each : scaled) each *= factor;
-    return compare_height(scaled, pressures()).slope_problem("GGALT");
+    return compare_height(scaled, climb_pressures()).slope_problem("GGALT");
   };
   EXPECT_EQ(problem_of_scaled(1.0), "");
   EXPECT_THAT(problem_of_scaled(1.0 / 0.3048), testing::HasSubstr("altitude = \"ft\""));
@@ -66,23 +66,23 @@ TEST(PressureHeight, SpikesOfThePressureDoNotDetermineTheSlope) {
 TEST(PressureHeight, CancellingPressureAndTemperatureAreUndecided) {
   std::vector<double> height;
   // A low of 5 hPa subtracts 45 m, warm air adds 30 to 60 m: 0.6 hPa remain, with a scatter of 1.0 hPa.
-  for (const double pressure : pressures()) height.push_back(1.03 * pressure_altitude(pressure + 5.0));
-  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
+  for (const double pressure : climb_pressures()) height.push_back(1.03 * pressure_altitude(pressure + 5.0));
+  EXPECT_EQ(compare_height(height, climb_pressures()).kind, Kind::undecided);
 }
 
 TEST(PressureHeight, HeightFromAnotherPressureIsUndecided) {
   std::vector<double> height;
   // A correction of 1.5 hPa, which changes by 1 hPa.
-  for (const double pressure : pressures())
+  for (const double pressure : climb_pressures())
     height.push_back(pressure_altitude(pressure + 1.0 + 0.01 * (900.0 - pressure)));
-  EXPECT_EQ(compare_height(height, pressures()).kind, Kind::undecided);
+  EXPECT_EQ(compare_height(height, climb_pressures()).kind, Kind::undecided);
 }
 
 TEST(PressureHeight, PressuresAreReadInTheUnitThatTheModelStates) {
   const test::TemporaryDirectory folder;
   std::vector<double> pascals;
   std::vector<double> height;
-  for (const double pressure : pressures()) {
+  for (const double pressure : climb_pressures()) {
     pascals.push_back(100.0 * pressure);
     height.push_back(pressure_altitude(pressure));
   }
