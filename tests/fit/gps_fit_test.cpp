@@ -33,12 +33,12 @@ ModelDefinition no_law() {
   return model;
 }
 
-RefitResult fit(const std::filesystem::path& path, const ModelDefinition& model,
-                const std::vector<std::string>& references, const pcor::RefitOptions& options = {}) {
+RefitResult fit_of_file(const std::filesystem::path& path, const ModelDefinition& model,
+                        const std::vector<std::string>& references, const pcor::RefitOptions& options = {}) {
   return pcor::refit({path}, model, pcor::read_references(references, model, {}).used, options);
 }
 
-constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // values of usual flight
+constexpr double usual_pressure = 700.0, usual_dynamic = 60.0, usual_ratio = -0.18;  // values of usual flight
 
 /// Error of the fitted delta-p in usual flight, hPa.
 double error_of(const RefitResult& fit) {
@@ -46,15 +46,16 @@ double error_of(const RefitResult& fit) {
   std::vector<double> defects;
   for (const ModelDefinition& each : models) {
     const auto& effects = each.model.effects;
-    defects.push_back(effects[0].parameters[0] * pressure + effects[1].parameters[0] * pressure * ratio +
-                      effects[2].parameters[0] * dynamic);
+    defects.push_back(effects[0].parameters[0] * usual_pressure +
+                      effects[1].parameters[0] * usual_pressure * usual_ratio +
+                      effects[2].parameters[0] * usual_dynamic);
   }
   return defects[0] - defects[1];
 }
 
 /// Its standard error, as stated.
 double stated_by(const RefitResult& fit) {
-  const std::vector<double> by{pressure, pressure * ratio, dynamic};
+  const std::vector<double> by{usual_pressure, usual_pressure * usual_ratio, usual_dynamic};
   double square = 0.0;
   for (std::size_t i = 0; i < by.size(); ++i) {
     for (std::size_t j = 0; j < by.size(); ++j) square += by[i] * fit.covariance[i][j] * by[j];
@@ -73,7 +74,7 @@ RefitResult fit_of_constant(double change, const std::vector<std::string>& refer
   model.fits[2][0].standard_error = error_of_qp;
   pcor::RefitOptions options;
   options.fix = {"static-alpha", "static-qp"};
-  return fit(simulated("c130-eight-circles"), model, references, options);
+  return fit_of_file(simulated("c130-eight-circles"), model, references, options);
 }
 
 /// Change of static-constant.a0 by one standard error of static-qp.a2, from two fits.
@@ -85,14 +86,15 @@ double change_by_qp(const std::vector<std::string>& references) {
 }  // namespace
 
 TEST(GpsFit, WindDeterminesTheLaw) {
-  const RefitResult result = fit(simulated("c130-eq18"), no_law(), {"wind"});
+  const RefitResult result = fit_of_file(simulated("c130-eq18"), no_law(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.4);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
   EXPECT_LT(stated_by(result), 0.25);
 }
 
 TEST(GpsFit, WindAndHeightDetermineLawAndThermometer) {
-  const RefitResult result = fit(simulated("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
+  const RefitResult result =
+      fit_of_file(simulated("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
   EXPECT_LT(std::abs(error_of(result)), 0.3);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
   EXPECT_THAT(result.notes, Contains(pcor::test::Says("the thermometer reads high by 0.")));
@@ -101,7 +103,7 @@ TEST(GpsFit, WindAndHeightDetermineLawAndThermometer) {
 // Shared with the nuisance, the offset was 0.3 K too small.
 TEST(GpsFit, ThermometerOffsetOfTheModelReplacesTheNuisance) {
   const ModelDefinition model = pcor::add_effects(laser_model(), {pcor::neutral_effect("temp-offset")});
-  const RefitResult result = fit(simulated("c130-eq18", hot_thermometer), model, {"wind", "height"});
+  const RefitResult result = fit_of_file(simulated("c130-eq18", hot_thermometer), model, {"wind", "height"});
   const FittedParameter& offset = result.parameters[3];
   ASSERT_EQ(offset.name, "temp-offset.offset");
   EXPECT_NEAR(offset.value, 2.0, 3.0 * offset.standard_error);
@@ -115,7 +117,8 @@ TEST(GpsFit, ThermometerCalibrationEqualsThermometerOffset) {
     const ModelDefinition model = pcor::add_effects(laser_model(), {pcor::neutral_effect(effect)});
     pcor::RefitOptions options;
     options.fix = fixed;
-    return fit(simulated("c130-eq18", hot_thermometer), model, {"wind", "height"}, options).parameters[3];
+    return fit_of_file(simulated("c130-eq18", hot_thermometer), model, {"wind", "height"}, options)
+        .parameters[3];
   };
   const FittedParameter offset = fit_with("temp-offset", {"temp-offset.slope"});
   const FittedParameter constant =
@@ -150,14 +153,14 @@ TEST(GpsFit, LevelCountsAFormulaWithoutCoefficients) {
 }
 
 TEST(GpsFit, HoldsCoefficientsUndeterminedByOneHeading) {
-  const RefitResult result = fit(simulated("c130-one-heading"), laser_model(), {"wind"});
+  const RefitResult result = fit_of_file(simulated("c130-one-heading"), laser_model(), {"wind"});
   EXPECT_LT(std::abs(error_of(result)), 0.3) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
   EXPECT_THAT(result.warnings, Contains(HasSubstr("circles")));
 }
 
 TEST(GpsFit, HeightAloneDoesNotDetermineTheLevel) {
-  const RefitResult result = fit(simulated("c130-eq18", warm_thermometer), laser_model(), {"height"});
+  const RefitResult result = fit_of_file(simulated("c130-eq18", warm_thermometer), laser_model(), {"height"});
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
   EXPECT_THAT(result.notes, testing::Not(Contains(pcor::test::Says("thermometer"))));
@@ -165,8 +168,8 @@ TEST(GpsFit, HeightAloneDoesNotDetermineTheLevel) {
 }
 
 TEST(GpsFit, CombinesWithALaser) {
-  const RefitResult laser = fit(simulated("c130-circles"), no_law(), {"lams"});
-  const RefitResult all = fit(simulated("c130-circles"), no_law(), {"wind", "lams"});
+  const RefitResult laser = fit_of_file(simulated("c130-circles"), no_law(), {"lams"});
+  const RefitResult all = fit_of_file(simulated("c130-circles"), no_law(), {"wind", "lams"});
   EXPECT_LT(std::abs(error_of(all)), 3.0 * stated_by(all));
   EXPECT_LE(stated_by(all), stated_by(laser));
   EXPECT_EQ(all.flights.front().reference, "lams") << "single figures are those of the laser";
@@ -175,16 +178,16 @@ TEST(GpsFit, CombinesWithALaser) {
 TEST(GpsFit, RefusesStages) {
   pcor::RefitOptions options;
   options.stages.push_back({{pcor::Regime::speed_run}, {"static-qp"}});
-  EXPECT_ANY_THROW(fit(simulated("c130-circles"), laser_model(), {"wind"}, options));
+  EXPECT_ANY_THROW(fit_of_file(simulated("c130-circles"), laser_model(), {"wind"}, options));
 }
 
 TEST(GpsFit, GpsAloneRefusesAPriorAndALoss) {
   pcor::RefitOptions with_prior;
   with_prior.use_prior = true;
-  EXPECT_ANY_THROW(fit(simulated("c130-circles"), laser_model(), {"wind"}, with_prior));
+  EXPECT_ANY_THROW(fit_of_file(simulated("c130-circles"), laser_model(), {"wind"}, with_prior));
   pcor::RefitOptions with_loss;
   with_loss.loss = pcor::Loss::none;
-  EXPECT_ANY_THROW(fit(simulated("c130-circles"), laser_model(), {"wind"}, with_loss));
+  EXPECT_ANY_THROW(fit_of_file(simulated("c130-circles"), laser_model(), {"wind"}, with_loss));
 }
 
 TEST(GpsFit, CoefficientAtItsBoundIsReported) {
@@ -193,13 +196,13 @@ TEST(GpsFit, CoefficientAtItsBoundIsReported) {
   model.fits.resize(model.model.effects.size());
   for (auto& each : model.fits) each.resize(1);
   model.fits[1][0].bounds = pcor::Bounds{0.0, 0.014};
-  const RefitResult result = fit(simulated("c130-eq18"), model, {"wind"});
+  const RefitResult result = fit_of_file(simulated("c130-eq18"), model, {"wind"});
   EXPECT_TRUE(result.parameters[1].at_bound);
   EXPECT_DOUBLE_EQ(result.parameters[1].value, 0.014);
   EXPECT_FALSE(result.parameters[0].at_bound);
   EXPECT_THAT(result.notes, Contains(pcor::test::Says("static-alpha.a1 is at its bound")));
   // The others make up for it: delta-p changes by less than the attack term that is missing.
-  EXPECT_LT(std::abs(error_of(result)), 0.9 * pressure * -ratio * (0.021279816 - 0.014));
+  EXPECT_LT(std::abs(error_of(result)), 0.9 * usual_pressure * -usual_ratio * (0.021279816 - 0.014));
 }
 
 // The columns of the fit contain half of an oscillation of 3 s, so its steps are twice too long.
@@ -214,7 +217,7 @@ TEST(GpsFit, WarnsIfItDoesNotConverge) {
       text.insert(at + yaw.size(), "\nperiod = 3\ncycles = 40");
     const pcor::test::TemporaryDirectory directory;
     pcor::simulate_flight(pcor::parse_scenario(text, "yaw"), directory / "yaw.nc");
-    const RefitResult result = fit(directory / "yaw.nc", model, {"wind"});
+    const RefitResult result = fit_of_file(directory / "yaw.nc", model, {"wind"});
     const auto warned = Contains(HasSubstr("did not converge"));
     if (is_fast)
       EXPECT_THAT(result.warnings, warned);
@@ -224,13 +227,13 @@ TEST(GpsFit, WarnsIfItDoesNotConverge) {
 }
 
 TEST(GpsFit, GustsAreNotExcluded) {
-  const RefitResult result = fit(simulated("c130-eq18"), laser_model(), {"wind"});
+  const RefitResult result = fit_of_file(simulated("c130-eq18"), laser_model(), {"wind"});
   EXPECT_EQ(result.masks[static_cast<std::size_t>(pcor::Mask::burst)], 0U);
 }
 
 TEST(GpsFit, JackknifeUsesAllReferences) {
-  const RefitResult laser = fit(simulated("c130-circles"), no_law(), {"lams"});
-  const RefitResult all = fit(simulated("c130-circles"), no_law(), {"wind", "lams"});
+  const RefitResult laser = fit_of_file(simulated("c130-circles"), no_law(), {"lams"});
+  const RefitResult all = fit_of_file(simulated("c130-circles"), no_law(), {"wind", "lams"});
   EXPECT_NE(all.parameters[0].jackknife_error, laser.parameters[0].jackknife_error);
   EXPECT_GT(all.parameters[0].jackknife_error, 0.0);
 }
@@ -239,7 +242,7 @@ TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
   ModelDefinition model = laser_model();
   model.uncertainty.static_defect = 0.3;
   model.uncertainty.static_defect_ratio = 0.001;
-  const RefitResult result = fit(simulated("c130-eq18"), model, {"wind"});
+  const RefitResult result = fit_of_file(simulated("c130-eq18"), model, {"wind"});
   EXPECT_EQ(result.model.uncertainty.static_defect, 0.3);
   EXPECT_EQ(result.model.uncertainty.static_defect_ratio, 0.001);
   // A fit by GPS alone does not compute these.
@@ -249,11 +252,11 @@ TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
 }
 
 TEST(GpsFit, FixedCoefficientsKeepTheirCovariance) {
-  const RefitResult laser = fit(simulated("c130-eq18"), laser_model(), {"lams"});
+  const RefitResult laser = fit_of_file(simulated("c130-eq18"), laser_model(), {"lams"});
   ASSERT_NE(laser.covariance[0][1], 0.0);
   pcor::RefitOptions options;
   options.fix = {laser.model.model.effects[0].id, laser.model.model.effects[1].id};
-  const RefitResult result = fit(simulated("c130-eq18"), laser.model, {"wind"}, options);
+  const RefitResult result = fit_of_file(simulated("c130-eq18"), laser.model, {"wind"}, options);
   ASSERT_EQ(result.covariance.size(), 3U);  // the fitted coefficient, and the fixed ones
   EXPECT_EQ(result.covariance[1][2], laser.covariance[0][1]);
   EXPECT_EQ(result.covariance[1][1], laser.covariance[0][0]);

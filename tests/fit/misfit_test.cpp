@@ -27,7 +27,7 @@ double peaked(double p, double q, double ratio, double time) {
   return made::equation_18(p, q, ratio, time) + 0.5 * std::exp(-state * state);
 }
 
-RefitResult fit(double (*defect)(double, double, double, double)) {
+RefitResult fit_with_defect(double (*defect)(double, double, double, double)) {
   std::vector<std::shared_ptr<const FlightSamples>> flights;
   for (unsigned seed = 1; seed <= 3; ++seed) {
     made::Plan plan;
@@ -42,7 +42,7 @@ RefitResult fit(double (*defect)(double, double, double, double)) {
 
 }  // namespace
 
-TEST(Misfit, CorrectLawHasAMisfitBelowTheNoise) { EXPECT_LT(fit(made::equation_18).left, 0.05); }
+TEST(Misfit, CorrectLawHasAMisfitBelowTheNoise) { EXPECT_LT(fit_with_defect(made::equation_18).left, 0.05); }
 
 // A missing roll gave a load factor of 10.
 TEST(Misfit, MissingRollGivesNoLoadFactor) {
@@ -97,8 +97,8 @@ TEST(Misfit, IsNoNoiseOfAnyStaticPressure) {
 }
 
 TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {
-  const RefitResult right = fit(made::equation_18);
-  const RefitResult wrong = fit(curved);
+  const RefitResult right = fit_with_defect(made::equation_18);
+  const RefitResult wrong = fit_with_defect(curved);
   // The part that the law cannot follow increases the residual: the squares add up.
   const double missing = std::sqrt(wrong.rms * wrong.rms - right.rms * right.rms);
   EXPECT_GT(missing, 0.1);
@@ -111,7 +111,7 @@ TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {
 
 // The stated error of the slope times its spread was 2.8 times the rms of the residual.
 TEST(Misfit, NarrowPeakDoesNotMakeTheSlopeUncertainByMoreThanTheResidual) {
-  const RefitResult result = fit(peaked);
+  const RefitResult result = fit_with_defect(peaked);
   constexpr double pressure = 700.0;  // hPa, mean
   constexpr double spread = 0.09;     // standard deviation of the ratio
   const FittedParameter& slope = result.parameters[1];

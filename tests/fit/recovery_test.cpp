@@ -17,7 +17,8 @@
 
 namespace {
 
-const std::size_t seeds = pcor::test::number_of_seeds();
+using pcor::test::number_of_seeds;
+
 constexpr std::uint64_t first_seed = 5000;
 
 const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
@@ -58,7 +59,7 @@ Study study(const std::string& scenario_name, const std::string& model_name, pco
   const pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / (model_name + ".toml"));
   pcor::Scenario scenario = pcor::read_scenario(scenarios / (scenario_name + ".toml"));
   Study result;
-  for (std::uint64_t seed = first_seed; seed < first_seed + seeds; ++seed) {
+  for (std::uint64_t seed = first_seed; seed < first_seed + number_of_seeds(); ++seed) {
     scenario.seed = seed;
     pcor::simulate_flight(scenario, directory / "flight.nc");
     const pcor::RefitResult fit =
@@ -69,8 +70,8 @@ Study study(const std::string& scenario_name, const std::string& model_name, pco
       record.values.push_back(parameter.value);
       record.errors.push_back(parameter.standard_error);
     }
-    result.rms_over_pressure += fit.rms_over_pressure / static_cast<double>(seeds);
-    result.r_squared += fit.r_squared / static_cast<double>(seeds);
+    result.rms_over_pressure += fit.rms_over_pressure / static_cast<double>(number_of_seeds());
+    result.r_squared += fit.r_squared / static_cast<double>(number_of_seeds());
   }
   return result;
 }
@@ -78,10 +79,11 @@ Study study(const std::string& scenario_name, const std::string& model_name, pco
 /// @param spread ratio of spread and stated error where it is known not to be 1, keyed by coefficient
 void expect_recovery(const Study& study, const std::map<std::string, double>& spread = {}) {
   for (const auto& [name, record] : study.records) {
-    EXPECT_GE(record.within(3.0), pcor::test::least_within(seeds, pcor::test::within_three)) << name;
+    EXPECT_GE(record.within(3.0), pcor::test::least_within(number_of_seeds(), pcor::test::within_three))
+        << name;
     const auto known = spread.find(name);
     EXPECT_NEAR(record.spread() / mean_of(record.errors), known == spread.end() ? 1.0 : known->second,
-                pcor::test::tolerance_of_spread(seeds))
+                pcor::test::tolerance_of_spread(number_of_seeds()))
         << name;
   }
 }

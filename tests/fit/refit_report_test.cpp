@@ -12,7 +12,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A fit to one flight with another one held out. @param rms_before of each, hPa
-RefitResult fit(double rms_before) {
+RefitResult fit_with_holdout(double rms_before) {
   RefitResult result;
   result.rms_before = rms_before;
   result.rms = 0.375;
@@ -35,20 +35,20 @@ Report report_of(const RefitResult& result) {
 }
 
 TEST(RefitReport, TitleAndSummaryStateRmsBeforeAndAfter) {
-  const Report report = report_of(fit(1.25));
+  const Report report = report_of(fit_with_holdout(1.25));
   EXPECT_THAT(report.title, AllOf(HasSubstr("1.250"), HasSubstr("0.375"), HasSubstr("0.250")));
   EXPECT_THAT(report.summary, Contains(AllOf(HasSubstr("later.nc"), HasSubstr("1.250"), HasSubstr("0.500"))));
 }
 
 TEST(RefitReport, TitleStatesAnUnchangedRmsOnceAndTheErrorByGps) {
-  RefitResult result = fit(0.3751);
+  RefitResult result = fit_with_holdout(0.3751);
   result.defect_error = 4.4;
   EXPECT_THAT(report_of(result).title,
               AllOf(HasSubstr("does not change"), HasSubstr("residual of 0.375 hPa"), HasSubstr("4.40 hPa")));
 }
 
 TEST(RefitReport, UnknownRmsBeforeIsOmitted) {
-  const Report report = report_of(fit(std::nan("")));
+  const Report report = report_of(fit_with_holdout(std::nan("")));
   EXPECT_THAT(report.title, AllOf(HasSubstr("0.375"), HasSubstr("0.250"), Not(HasSubstr("nan"))));
   EXPECT_THAT(report.summary,
               Contains(AllOf(HasSubstr("later.nc"), HasSubstr("0.500"), Not(HasSubstr("nan")))));

@@ -31,7 +31,7 @@ ModelDefinition law_with_gain() {
   return pcor::add_effects(laser_model(), {pcor::neutral_effect("qcf-gain")}, {});
 }
 
-RefitResult fit(const ModelDefinition& model, const std::vector<std::string>& references) {
+RefitResult fit_of_short_flight(const ModelDefinition& model, const std::vector<std::string>& references) {
   return pcor::refit({flight_file()}, model, pcor::read_references(references, model, {}).used);
 }
 
@@ -44,16 +44,17 @@ const FittedParameter& parameter(const RefitResult& fit, const std::string& name
 
 TEST(SeveralReferences, CombinationSeparatesCoefficients) {
   // The laser takes a gain of QCF for static-qp; total pressures do not.
-  const FittedParameter alone = parameter(fit(law_with_gain(), {"lams"}), "qcf-gain.gain");
-  const FittedParameter both = parameter(fit(law_with_gain(), {"lams", "total:PSFRD+QCFR"}), "qcf-gain.gain");
+  const FittedParameter alone = parameter(fit_of_short_flight(law_with_gain(), {"lams"}), "qcf-gain.gain");
+  const FittedParameter both =
+      parameter(fit_of_short_flight(law_with_gain(), {"lams", "total:PSFRD+QCFR"}), "qcf-gain.gain");
   EXPECT_FALSE(alone.standard_error < 10.0 * both.standard_error) << "alone it may end at a bound";
   EXPECT_NEAR(both.value, gain, 4.0 * both.standard_error) << "once in 16,000";
   EXPECT_LT(std::abs(both.value - gain), 0.1 * gain);
 }
 
 TEST(SeveralReferences, InsensitiveReferencesChangeNoCoefficient) {
-  const RefitResult alone = fit(laser_model(), {"lams"});
-  const RefitResult both = fit(laser_model(), {"lams", "total:PSFRD+QCFR"});
+  const RefitResult alone = fit_of_short_flight(laser_model(), {"lams"});
+  const RefitResult both = fit_of_short_flight(laser_model(), {"lams", "total:PSFRD+QCFR"});
   for (std::size_t p = 0; p < alone.parameters.size(); ++p) {
     EXPECT_EQ(both.parameters[p].value, alone.parameters[p].value);
     EXPECT_EQ(both.parameters[p].standard_error, alone.parameters[p].standard_error);
@@ -70,7 +71,7 @@ TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
   ModelDefinition model = pcor::add_effects(laser_model(), {pcor::neutral_effect("total-lag")}, {});
   model.fits.back().front().bounds =
       pcor::Bounds{-30.0, 30.0};  // the flight has no lag, and may go below zero
-  const FittedParameter alone = parameter(fit(model, {"lams"}), "total-lag.tau");
+  const FittedParameter alone = parameter(fit_of_short_flight(model, {"lams"}), "total-lag.tau");
   pcor::RefitOptions options;
   options.alike = {"total-lag"};
   const References references = pcor::read_references({"lams", "total:PSFRD+QCFR"}, model, {}).used;
@@ -78,7 +79,8 @@ TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
       parameter(pcor::refit({flight_file()}, model, references, options), "total-lag.tau");
   EXPECT_NEAR(alike.value, alone.value, 1e-9) << "the total pressures see no other coefficient of this model";
   EXPECT_NEAR(alike.standard_error, alone.standard_error, 1e-9);
-  const FittedParameter of_one = parameter(fit(model, {"lams", "total:PSFRD+QCFR"}), "total-lag.tau");
+  const FittedParameter of_one =
+      parameter(fit_of_short_flight(model, {"lams", "total:PSFRD+QCFR"}), "total-lag.tau");
   EXPECT_LT(of_one.standard_error, alone.standard_error) << "a lag of one system is seen there";
 }
 
@@ -129,7 +131,7 @@ TEST(SeveralReferences, OneReferenceGivenTwiceHasTheErrorsOfOne) {
 TEST(SeveralReferences, RefusalByTotalPressureOmitsTheMinimum) {
   ModelDefinition model = laser_model();
   model.model.policy.minimum = 1.113;
-  const auto error = pcor::test::error_of([&] { fit(model, {"total:PSFRD+QCFR"}); });
+  const auto error = pcor::test::error_of([&] { fit_of_short_flight(model, {"total:PSFRD+QCFR"}); });
   EXPECT_THAT(error, pcor::test::IsError(pcor::Error::Code::fit, "static-constant.a0"));
   EXPECT_THAT(error, testing::Not(pcor::test::IsError(pcor::Error::Code::fit, "1.113")));
 }

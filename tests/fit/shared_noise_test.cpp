@@ -14,8 +14,8 @@ using namespace pcor::internal;
 
 namespace {
 
-constexpr std::size_t count = 34;  // the memory is found from each third
-constexpr std::size_t loud = 16;   // equal to no shared level
+constexpr std::size_t flight_count = 34;  // the memory is found from each third
+constexpr std::size_t loud_flight = 16;   // equal to no shared level
 
 /// The robust deviation of the innovations of each flight.
 std::vector<double> deviations(std::size_t memory) {
@@ -23,10 +23,10 @@ std::vector<double> deviations(std::size_t memory) {
   const ModelDefinition model = made::model({"static-constant", "static-alpha", "static-qp"});
   const References references = made::pressure_reference();
   std::vector<std::shared_ptr<const FlightSamples>> samples;
-  for (std::size_t f = 0; f < count; ++f) {
+  for (std::size_t f = 0; f < flight_count; ++f) {
     made::Plan plan;
     plan.seed = static_cast<unsigned>(f);
-    plan.noise = f == loud ? 3.0 : 0.3;
+    plan.noise = f == loud_flight ? 3.0 : 0.3;
     plan.defect = made::equation_18;
     samples.push_back(made::shared(plan));
   }
@@ -44,11 +44,11 @@ std::vector<double> deviations(std::size_t memory) {
 
 TEST(SharedNoise, EachFlightHasItsOwnNoiseLevel) {
   const std::vector<double> kept = deviations(std::size_t{512} << 20U);
-  for (std::size_t f = 0; f < count; ++f) {
+  for (std::size_t f = 0; f < flight_count; ++f) {
     // A level of ten times the common one is moved towards it by 15 % of its logarithm, 10^0.15 = 1.41; 900
     // innovations determine a robust deviation to 4 %, and the slow part may come from the other flights
     // alone.
-    EXPECT_NEAR(kept[f], f == loud ? 1.41 : 1.0, 0.2) << f;
+    EXPECT_NEAR(kept[f], f == loud_flight ? 1.41 : 1.0, 0.2) << f;
   }
   // Flights that are rebuilt in every pass keep their levels.
   EXPECT_EQ(deviations(0), kept);

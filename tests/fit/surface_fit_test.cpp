@@ -54,7 +54,7 @@ double true_error(const RefitResult& fit, const made::Plan& of) {
   return std::sqrt(squares / static_cast<double>(samples->time.size()));
 }
 
-RefitResult fit(const ModelDefinition& model, const made::Plan& of) {
+RefitResult fit_of_plan(const ModelDefinition& model, const made::Plan& of) {
   RefitOptions options;
   options.trust_reference = true;
   return refit({made::shared(of)}, model, made::pressure_reference(), options);
@@ -98,8 +98,8 @@ TEST(SurfaceColumns, AreDerivativesOfTheResidual) {
 
 TEST(SurfaceFit, FindsABumpThatTheLawLacks) {
   const made::Plan first = plan(11, with_bump);
-  const RefitResult law = fit(made::model({"static-constant", "static-alpha", "static-qp"}), first);
-  const RefitResult surface = fit(law_with_surface(), first);
+  const RefitResult law = fit_of_plan(made::model({"static-constant", "static-alpha", "static-qp"}), first);
+  const RefitResult surface = fit_of_plan(law_with_surface(), first);
   ASSERT_EQ(surface.surfaces.size(), 1U);
   EXPECT_EQ(surface.surfaces.front().effect, "static-surface");
   EXPECT_GT(surface.surfaces.front().degrees_of_freedom, 3.0);
@@ -109,7 +109,7 @@ TEST(SurfaceFit, FindsABumpThatTheLawLacks) {
 
 TEST(SurfaceFit, CorrectLawGivesASmallSurface) {
   const made::Plan first = plan(21, made::equation_18);
-  const RefitResult surface = fit(law_with_surface(), first);
+  const RefitResult surface = fit_of_plan(law_with_surface(), first);
   // Autocorrelated noise of 0.3 hPa: an independent sample every 6 s, so each degree of freedom adds
   // 0.3/sqrt(600) = 0.012 hPa; three terms of the law add 0.02 hPa.
   EXPECT_LT(surface.surfaces.front().degrees_of_freedom, 8.0);
@@ -147,7 +147,7 @@ TEST(SurfaceFit, StartOfThePriorDoesNotMatter) {
 
 TEST(SurfaceFit, StatesAnErrorThatCoversTheTruth) {
   const made::Plan first = plan(31, with_bump);
-  const RefitResult found = fit(law_with_surface(), first);
+  const RefitResult found = fit_of_plan(law_with_surface(), first);
   const ModelUncertainty uncertainty = uncertainty_of(found.model);
   EXPECT_TRUE(is_covariance(uncertainty.covariance, found.parameters.size()));
   made::Plan quiet = first;
@@ -171,7 +171,7 @@ TEST(SurfaceFit, StatesAnErrorThatCoversTheTruth) {
 }
 
 TEST(SurfaceFit, LoopReproducesTheFittedSurface) {
-  const RefitResult found = fit(law_with_surface(), plan(41, with_bump));
+  const RefitResult found = fit_of_plan(law_with_surface(), plan(41, with_bump));
   const auto samples = made::shared(plan(41, with_bump));
   const Residuals residuals(samples, found.model, *made::pressure_reference().front());
   const std::vector<double> defects =
