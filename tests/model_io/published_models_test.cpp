@@ -231,7 +231,7 @@ struct C130Row {
 // it is a straight line in one over the dynamic pressure rho v^2/2. Its two constants are those with which
 // the table was made, found from the table: they reproduce its 168 defects.
 Sample c130_sample(const C130Row& row) {
-  const double temperature = atmosphere::standard_temperature(row.p);
+  const double temperature = atmosphere::temperature_at_pressure(row.p);
   const double density_over_two = 0.5 * row.p / (constants::gas_constant_dry_air * temperature);
   Sample sample;
   sample.p = row.p;

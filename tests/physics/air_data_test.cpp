@@ -2,11 +2,12 @@
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 #include "support/atmosphere.hpp"
+#include "support/constants.hpp"
 
 #include <array>
 #include <cmath>
-#include <limits>
 
+using atmosphere::dry;
 using pcor::dry_air;
 using pcor::dynamic_pressure_from_airspeed;
 using pcor::dynamic_pressure_from_mach;
@@ -16,13 +17,7 @@ using pcor::MoistAir;
 using pcor::pressure_ratio_of_airspeed;
 using pcor::speed_of_sound;
 using pcor::true_airspeed;
-
-namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-const MoistAir<double> dry = dry_air<double>();
-
-}  // namespace
+using pcor::test::missing;
 
 TEST(AirData, PressureRatioAgreesWithNaca1135) {
   // NACA Report 1135, table I, p/pt. Half a unit of the last printed digit.
@@ -102,7 +97,7 @@ TEST(AirData, DynamicPressureFromAirspeedAndMachNumberAgree) {
   for (const auto& [p, v] : atmosphere::envelopes()) {
     for (const double h : {0.0, 0.02}) {
       const MoistAir<double> air = moist_air(h);
-      const double T = atmosphere::standard_temperature(p);
+      const double T = atmosphere::temperature_at_pressure(p);
       const double q = dynamic_pressure_from_airspeed(p, v, T, air);
       EXPECT_NEAR(dynamic_pressure_from_mach(p, v / speed_of_sound(T, air), air) / q, 1.0, 1e-13);
       EXPECT_NEAR(true_airspeed(mach_number(p, q, air), T, air) / v, 1.0, 1e-13);
@@ -115,7 +110,7 @@ TEST(AirData, EnergyAndEntropyAreConserved) {
   // From the free stream to rest: c_p T + v^2/2 is constant, and so is T p^(-R/c_p).
   for (const auto& [p, v] : atmosphere::envelopes()) {
     const MoistAir<double> air = moist_air(0.01);
-    const double T = atmosphere::standard_temperature(p);
+    const double T = atmosphere::temperature_at_pressure(p);
     const double q = dynamic_pressure_from_airspeed(p, v, T, air);
     const double at_rest = T * (1 + pcor::dynamic_heating(p, q, air));
     EXPECT_NEAR((air.specific_heat_pressure * T + v * v / 2) / (air.specific_heat_pressure * at_rest), 1.0,

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 #include <pcor/physics/humidity.hpp>
+#include "support/constants.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace c = pcor::constants;
 using pcor::enhancement_factor;
@@ -10,11 +10,11 @@ using pcor::saturation_vapor_pressure;
 using pcor::vapor_pressure_from_dew_point;
 using pcor::vapor_pressure_over_ice;
 using pcor::vapor_pressure_over_water;
+using pcor::test::missing;
 
 namespace {
 
 constexpr double triple_point = 273.16;  // K
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 // Latent heat, J/kg, that the Clausius-Clapeyron equation finds in a vapour pressure: L = R_w T^2 dln(e)/dT.
 template <class VaporPressure>

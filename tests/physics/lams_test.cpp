@@ -1,15 +1,15 @@
 #include <gmock/gmock.h>
 #include <pcor/physics/lams.hpp>
 #include "support/atmosphere.hpp"
+#include "support/constants.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 namespace c = pcor::constants;
 using atmosphere::envelopes;
-using atmosphere::standard_temperature;
+using atmosphere::temperature_at_pressure;
 using pcor::beam_cosine;
 using pcor::dynamic_pressure_from_airspeed;
 using pcor::lams_iterated;
@@ -24,11 +24,10 @@ using pcor::pressure_ratio_of_airspeed;
 using pcor::RecoveryFactor;
 using pcor::static_defect_from_pressure_ratio;
 using pcor::true_airspeed;
+using pcor::test::missing;
 using testing::HasSubstr;
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 const RecoveryFactor constant_recovery{{0.975, 0.0, 0.0, 0.0}};
 const RecoveryFactor mach_recovery{{0.988, 0.053, 0.090, 0.091}};
@@ -36,7 +35,7 @@ const RecoveryFactor mach_recovery{{0.988, 0.053, 0.090, 0.091}};
 // The air, and what an aircraft with the static defect d, its pitot without loss, measures in it.
 struct Flight {
   Flight(double p_, double v_, double e_over_p, double d_, const RecoveryFactor& recovery)
-      : p(p_), v(v_), T(standard_temperature(p_)), e(e_over_p * p_), d(d_), air(moist_air(e_over_p)) {
+      : p(p_), v(v_), T(temperature_at_pressure(p_)), e(e_over_p * p_), d(d_), air(moist_air(e_over_p)) {
     const double total = p * std::pow(1 + v * v / (2 * air.specific_heat_pressure * T),
                                       air.specific_heat_pressure / air.gas_constant);
     mach = v / std::sqrt(air.heat_capacity_ratio * air.gas_constant * T);
@@ -194,7 +193,7 @@ int passes_to(double tolerance, const Flight& f) {
 }
 
 Flight at_mach(double p, double mach, double d) {
-  const double sound = std::sqrt(1.4 * c::gas_constant_dry_air * standard_temperature(p));
+  const double sound = std::sqrt(1.4 * c::gas_constant_dry_air * temperature_at_pressure(p));
   return Flight(p, mach * sound, 0.0, d, constant_recovery);
 }
 

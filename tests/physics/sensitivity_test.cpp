@@ -9,7 +9,8 @@
 // Response of delta-p from LAMS to errors of its inputs: the table of the cost of each effect, and its two
 // source formulas.
 
-using atmosphere::standard_temperature;
+using atmosphere::dry;
+using atmosphere::temperature_at_pressure;
 using pcor::beam_cosine;
 using pcor::moist_air;
 using pcor::MoistAir;
@@ -18,7 +19,6 @@ using pcor::static_defect_from_pressure_ratio;
 
 namespace {
 
-const MoistAir<double> dry = pcor::dry_air<double>();
 constexpr double recovery = 0.97;
 
 // A measured state without defect, and the table's row for it.
@@ -32,7 +32,7 @@ struct Row {
   double of_dynamic, of_static;                // 1: for an error of the pressures
   double loss, scale, cosine, dryness;         // hPa: 1 % of q, 0.1 % of v, cos 3 deg, dry constants at 70 %
 
-  double T() const { return standard_temperature(p); }
+  double T() const { return temperature_at_pressure(p); }
   double total() const { return p * (1 + pressure_ratio_of_airspeed(v, T(), dry)); }
 
   double defect(double airspeed_used, double T_used) const {
@@ -156,7 +156,7 @@ TEST(Sensitivity, OfTheAirspeedToDeltaP) {
   // A delta-p that is 1 hPa too high makes the airspeed too low by 0.94 m/s at 700 hPa and 120 m/s, and
   // by 1.06 at 550 hPa and 130 m/s.
   for (const auto& [p, v, change] : {std::array{700.0, 120.0, -0.94}, {550.0, 130.0, -1.06}}) {
-    const double T = standard_temperature(p);
+    const double T = temperature_at_pressure(p);
     const double q = pcor::dynamic_pressure_from_airspeed(p, v, T, dry);
     const auto airspeed = [&, p = p](double defect) {
       return pcor::true_airspeed(pcor::mach_number(p + defect, q - defect, dry), T, dry);

@@ -1,16 +1,19 @@
 #pragma once
 
 #include <pcor/physics/constants.hpp>
+#include <pcor/physics/moist_air.hpp>
 
 #include <cmath>
 #include <vector>
 
-/// Standard temperature and flight envelopes for tests.
+/// Dry air, standard temperature and flight envelopes for tests.
 namespace atmosphere {
+
+inline const pcor::MoistAir<double> dry = pcor::dry_air<double>();
 
 /// ISO 2533 standard temperature, K, at the pressure `p`, hPa: lapse rate 6.5 K/km up to 226.32 hPa,
 /// 216.65 K above.
-inline double standard_temperature(double p) {
+inline double temperature_at_pressure(double p) {
   if (p < 226.32) return 216.65;
   return 288.15 * std::pow(p / 1013.25, pcor::constants::gas_constant_dry_air * 0.0065 / 9.80665);
 }
@@ -28,7 +31,7 @@ inline std::vector<FlightState> envelopes() {
     for (double v = 75.0; v <= 155.0; v += 10.0) states.push_back({p, v});
   }
   for (const double p : {1000.0, 850.0, 700.0, 500.0, 350.0, 250.0, 180.0, 140.0}) {
-    const double sound = std::sqrt(1.4 * pcor::constants::gas_constant_dry_air * standard_temperature(p));
+    const double sound = std::sqrt(1.4 * pcor::constants::gas_constant_dry_air * temperature_at_pressure(p));
     for (int percent = 35; percent <= 85; percent += 5) states.push_back({p, 0.01 * percent * sound});
   }
   return states;
