@@ -60,7 +60,7 @@ using pcor::Quantity;
 
 // All stages active: LAMS, flow angles from the radome, a lag, a formula with an extra variable, taper,
 // humidity, a calibrated temperature, its filter, and the correction by LAMS.
-Model everything(pcor::LamsApproach approach) {
+Model model_with_everything(pcor::LamsApproach approach) {
   Model model;
   model.effects = {
       {"static-constant", {0.004127875}},
@@ -108,9 +108,10 @@ TEST(Allocation, TestCountsAllocations) {
 TEST(Allocation, LoopDoesNotAllocate) {
   for (const auto approach : {pcor::LamsApproach::simultaneous, pcor::LamsApproach::iterated}) {
     std::string error;
-    const pcor::ModelUncertainty uncertainty = pcor::test::uncertain_in_everything(everything(approach));
+    const pcor::ModelUncertainty uncertainty =
+        pcor::test::uncertain_in_everything(model_with_everything(approach));
     auto loop =
-        Loop::build(everything(approach),
+        Loop::build(model_with_everything(approach),
                     {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::radome_dynamic_pressure,
                      Quantity::attack_differential_pressure, Quantity::sideslip_differential_pressure,
                      Quantity::recovery_temperature, Quantity::dew_point, Quantity::lams_airspeed},

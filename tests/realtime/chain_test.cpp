@@ -1,10 +1,11 @@
 #include <gmock/gmock.h>
 #include <pcor/realtime/chain.hpp>
+#include "realtime/sample.hpp"
 #include "support/archetype.hpp"
 #include "support/atmosphere.hpp"
+#include "support/constants.hpp"
 
 #include <cmath>
-#include <map>
 #include <random>
 #include <string>
 #include <thread>
@@ -21,35 +22,29 @@ using pcor::Quality;
 using pcor::QualityFlags;
 using pcor::Quantity;
 using pcor::State;
+using pcor::test::missing;
+using pcor::test::roles_of;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+using Recorded = pcor::test::Sample;
 
-using Recorded = std::map<Quantity, double>;
-
-std::vector<Quantity> roles(const Recorded& recorded) {
-  std::vector<Quantity> result;
-  for (const auto& [quantity, value] : recorded) result.push_back(quantity);
-  return result;
-}
-
-Chain build(const Model& model, const Recorded& recorded) {
+Chain build_chain(const Model& model, const Recorded& recorded) {
   BindingError error;
-  auto chain = Chain::build(model, roles(recorded), &error);
+  auto chain = Chain::build(model, roles_of(recorded), &error);
   if (!chain) throw std::runtime_error(error.message());
   return *chain;
 }
 
 std::string error_of(const Model& model, const Recorded& recorded) {
   BindingError error;
-  return Chain::build(model, roles(recorded), &error) ? "no error" : error.message();
+  return Chain::build(model, roles_of(recorded), &error) ? "no error" : error.message();
 }
 
-struct Sample {
+struct ChainResult {
   State<double> state;
   QualityFlags flags;
 
@@ -58,8 +53,8 @@ struct Sample {
 };
 
 // One sample through all stages.
-Sample fly(const Chain& chain, const Recorded& recorded) {
-  Sample sample;
+ChainResult fly(const Chain& chain, const Recorded& recorded) {
+  ChainResult sample;
   auto& [state, flags] = sample;
   for (const auto& [quantity, value] : recorded) state[quantity] = value;
   const double* parameters = chain.parameters().data();
@@ -73,7 +68,9 @@ Sample fly(const Chain& chain, const Recorded& recorded) {
   return sample;
 }
 
-Sample fly(const Model& model, const Recorded& recorded) { return fly(build(model, recorded), recorded); }
+ChainResult fly(const Model& model, const Recorded& recorded) {
+  return fly(build_chain(model, recorded), recorded);
+}
 
 Recorded with(Recorded recorded, Quantity quantity, double value) {
   recorded[quantity] = value;
@@ -147,7 +144,7 @@ const Truth truth;
 
 TEST(Chain, RecoversTheTrueAir) {
   // Two roundings of a pressure, 1e-13 of 700 hPa, are 1e-11 K and m/s; LAMS is exact to 1e-9 hPa.
-  const Sample sample = fly(truth.model(), truth.recorded());
+  const ChainResult sample = fly(truth.model(), truth.recorded());
   EXPECT_EQ(sample.flags.bits(), 0U);
   EXPECT_NEAR(sample[Quantity::static_defect], truth.defect(), 1e-11);
   EXPECT_NEAR(sample[Quantity::corrected_static_pressure], truth.p, 1e-11);
@@ -165,7 +162,7 @@ TEST(Chain, KeepsTheTotalPressure) {
   for (const double a0 : {-0.01, 0.0, 0.005, 0.02}) {
     Model model = truth.model();
     model.effects = {catalogued("static-constant", {a0})};
-    const Sample s = fly(model, truth.recorded());
+    const ChainResult s = fly(model, truth.recorded());
     EXPECT_NEAR(
         (s[Quantity::corrected_static_pressure] + s[Quantity::corrected_dynamic_pressure]) / truth.total(),
         1.0, 1e-12)
@@ -178,10 +175,10 @@ TEST(Chain, ComputesEquation18OfTheMemo) {
   Model model;
   model.effects = {catalogued("static-constant", {.004127875}), catalogued("static-alpha", {.021279816}),
                    catalogued("static-qp", {.030849643})};
-  const Sample s = fly(model, {{Quantity::static_pressure, 700},
-                               {Quantity::dynamic_pressure, 67.6},
-                               {Quantity::attack_differential_pressure, -0.318 * 67},
-                               {Quantity::radome_dynamic_pressure, 67}});
+  const ChainResult s = fly(model, {{Quantity::static_pressure, 700},
+                                    {Quantity::dynamic_pressure, 67.6},
+                                    {Quantity::attack_differential_pressure, -0.318 * 67},
+                                    {Quantity::radome_dynamic_pressure, 67}});
   EXPECT_NEAR(s[Quantity::static_defect], 0.24, 0.006);
   EXPECT_NEAR(s[Quantity::attack_ratio], -0.318, 1e-15);
   EXPECT_NEAR(s[Quantity::dynamic_ratio], 67.6 / 700, 1e-15);
@@ -201,9 +198,9 @@ TEST(Chain, SumIsIndependentOfTheOrderOfEffects) {
   Model model = truth.model();
   model.effects = {catalogued("static-constant", {0.005}), catalogued("lams-elevation", {0.3}),
                    catalogued("static-qp", {0.02}), catalogued("recovery-factor", {0.01})};
-  const Chain chain = build(model, truth.recorded());
+  const Chain chain = build_chain(model, truth.recorded());
   EXPECT_THAT(chain.parameters(), ElementsAre(0.005, 0.3, 0.02, 0.01));
-  const Sample s = fly(chain, truth.recorded());
+  const ChainResult s = fly(chain, truth.recorded());
   EXPECT_NEAR(s[Quantity::static_defect],
               0.005 * s[Quantity::static_pressure] + 0.02 * s[Quantity::dynamic_pressure], 1e-12);
   std::swap(model.effects[0], model.effects[3]);
@@ -215,7 +212,7 @@ TEST(Chain, EffectsScaleWithMeasuredPressures) {
   // A scaled effect is the formula with the pressures written out. To rounding of some products.
   const Recorded recorded = truth.recorded();
   const auto corrected = [&](const ModelEffect& effect) {
-    const Sample sample = fly(with(Model{}, effect), recorded);
+    const ChainResult sample = fly(with(Model{}, effect), recorded);
     return std::pair(sample[Quantity::corrected_static_pressure],
                      sample[Quantity::corrected_dynamic_pressure]);
   };
@@ -235,7 +232,7 @@ TEST(Chain, EffectsScaleWithMeasuredPressures) {
 
 TEST(Chain, WithoutEffectsKeepsThePressures) {
   Model model;
-  const Sample s = fly(model, {{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67}});
+  const ChainResult s = fly(model, {{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67}});
   EXPECT_EQ(s[Quantity::static_defect], 0.0);
   EXPECT_EQ(s[Quantity::corrected_static_pressure], 700.0);
 }
@@ -264,7 +261,7 @@ TEST(Policy, MissingInputOfATaperedDefectSetsABit) {
   Recorded recorded = with(truth.recorded(), Quantity::attack_differential_pressure, -5.0);
   recorded[Quantity::radome_dynamic_pressure] = missing;
   for (const double q : {1.5, 10.0, 60.0}) {
-    const Sample s = fly(model, with(recorded, Quantity::dynamic_pressure, q));
+    const ChainResult s = fly(model, with(recorded, Quantity::dynamic_pressure, q));
     EXPECT_TRUE(std::isnan(s[Quantity::static_defect])) << q;
     EXPECT_TRUE(s.has(Quality::effect_input_missing)) << q;
   }
@@ -272,7 +269,7 @@ TEST(Policy, MissingInputOfATaperedDefectSetsABit) {
 
 TEST(Policy, WithoutTaperThereIsNoDefectWithoutAirflow) {
   for (const double q : {0.0, -5.0, missing}) {
-    const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::dynamic_pressure, q));
+    const ChainResult s = fly(truth.model(), with(truth.recorded(), Quantity::dynamic_pressure, q));
     EXPECT_TRUE(std::isnan(s[Quantity::static_defect])) << q;
   }
 }
@@ -291,7 +288,7 @@ TEST(Policy, DomainFlagsEachEndAndKeepsValues) {
   for (const auto& [lower, upper, outside] :
        {std::tuple{q - 1, q + 1, false}, {q + 1, q + 2, true}, {q - 2, q - 1, true}, {q, q, false}}) {
     model.domain = {{"dynamic_pressure", lower, upper}};
-    const Sample s = fly(model, truth.recorded());
+    const ChainResult s = fly(model, truth.recorded());
     EXPECT_EQ(s.has(Quality::outside_domain), outside) << lower << ' ' << upper;
     EXPECT_NEAR(s[Quantity::static_defect], truth.defect(), 1e-11);
   }
@@ -303,8 +300,8 @@ TEST(Policy, UnknownDomainQuantityIsNotInside) {
   model.domain = {{"altitude", 0.0, 5000.0}};
   for (const auto& [altitude, outside] : {std::pair{3000.0, false}, {6000.0, true}, {missing, true}}) {
     const Recorded recorded = with(truth.recorded(), Quantity::altitude, altitude);
-    const Chain chain = build(model, recorded);
-    const Sample s = fly(chain, recorded);
+    const Chain chain = build_chain(model, recorded);
+    const ChainResult s = fly(chain, recorded);
     EXPECT_EQ(s.has(Quality::outside_domain), outside) << altitude;
     EXPECT_EQ(chain.is_outside_domain(s.state), outside) << altitude;
     EXPECT_NEAR(s[Quantity::static_defect], truth.defect(), 1e-11);
@@ -312,7 +309,7 @@ TEST(Policy, UnknownDomainQuantityIsNotInside) {
 }
 
 TEST(Air, HumidityIsNotAboveSaturation) {
-  const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, 8.0));
+  const ChainResult s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, 8.0));
   EXPECT_TRUE(s.has(Quality::humidity_limited));
   const double saturation = pcor::vapor_pressure_over_water(s[Quantity::ambient_temperature]);
   // The limit was taken at the temperature of the unlimited air: 0.02 K, 0.15 % of e.
@@ -325,7 +322,7 @@ TEST(Air, SupersaturationOverIceIsNotLimited) {
   cold.T = 240;
   cold.e = 0.98 * pcor::vapor_pressure_over_water(cold.T);
   ASSERT_GT(cold.e, pcor::vapor_pressure_over_ice(cold.T));
-  const Sample s = fly(cold.model(), cold.recorded());
+  const ChainResult s = fly(cold.model(), cold.recorded());
   EXPECT_FALSE(s.has(Quality::humidity_limited));
   EXPECT_NEAR(s[Quantity::humidity] * cold.p, cold.e, 1e-12);
 }
@@ -336,16 +333,16 @@ TEST(Air, MissingSolutionSetsTheBitOfTheTemperature) {
   model.effects = {catalogued("static-constant", {0.001})};
   model.recovery = {{0.988, 0.053, 0.090, 0.091}};
   model.policy.min_dynamic_pressure = 0.0;
-  const Sample s = fly(model, {{Quantity::static_pressure, 500.0},
-                               {Quantity::dynamic_pressure, 0.5},
-                               {Quantity::recovery_temperature, 280.0}});
+  const ChainResult s = fly(model, {{Quantity::static_pressure, 500.0},
+                                    {Quantity::dynamic_pressure, 0.5},
+                                    {Quantity::recovery_temperature, 280.0}});
   ASSERT_EQ(s[Quantity::corrected_dynamic_pressure], 0.0);
   EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
   EXPECT_TRUE(s.has(Quality::temperature_missing));
 }
 
 TEST(Air, NegativeHumidityIsDry) {
-  const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, -0.1));
+  const ChainResult s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, -0.1));
   EXPECT_EQ(s[Quantity::humidity], 0.0);
   EXPECT_TRUE(s.has(Quality::humidity_limited));
 }
@@ -355,7 +352,7 @@ TEST(Air, WithoutHumidityIsDry) {
   dry.e = 0;
   for (const Recorded& recorded : {with(dry.recorded(), Quantity::vapor_pressure, missing),
                                    without(dry.recorded(), Quantity::vapor_pressure)}) {
-    const Sample s = fly(dry.model(), recorded);
+    const ChainResult s = fly(dry.model(), recorded);
     EXPECT_EQ(s[Quantity::humidity], 0.0);
     EXPECT_NEAR(s[Quantity::ambient_temperature], dry.T, 1e-10);
     EXPECT_NEAR(s[Quantity::corrected_airspeed], dry.v, 1e-10);
@@ -366,7 +363,7 @@ TEST(Air, WithoutHumidityIsDry) {
 TEST(Air, DryConstantsIgnoreTheVapour) {
   Model model = truth.model();
   model.moist = false;
-  const Sample s = fly(model, truth.recorded());
+  const ChainResult s = fly(model, truth.recorded());
   EXPECT_EQ(s[Quantity::humidity], 0.0);
   EXPECT_EQ(s.flags.bits(), 0U);
 }
@@ -375,7 +372,7 @@ TEST(Air, VapourIsComputedFromTheDewPoint) {
   const double dew_point = 265;
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, dew_point);
-  const Sample s = fly(truth.model(), recorded);
+  const ChainResult s = fly(truth.model(), recorded);
   const double e = pcor::vapor_pressure_over_water(dew_point) * pcor::enhancement_factor(dew_point, truth.p);
   EXPECT_NEAR(s[Quantity::humidity] * truth.p, e, 1e-11);
   EXPECT_NEAR(e, 3.31, 0.02) << "the saturation over water at -8 deg C and 0.3 %";
@@ -385,7 +382,7 @@ TEST(Air, VapourIsComputedFromTheFrostPoint) {
   const double frost_point = 265;
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::frost_point, frost_point);
-  const Sample s = fly(truth.model(), recorded);
+  const ChainResult s = fly(truth.model(), recorded);
   const double e =
       pcor::vapor_pressure_over_ice(frost_point) * pcor::enhancement_factor(frost_point, truth.p);
   EXPECT_NEAR(s[Quantity::humidity] * truth.p, e, 1e-11);
@@ -397,7 +394,7 @@ TEST(Air, RecordedAmbientTemperatureIsUnchanged) {
       with(without(truth.recorded(), Quantity::recovery_temperature), Quantity::ambient_temperature, truth.T);
   Model model = truth.model();
   model.lams.approach = LamsApproach::with_temperature;
-  const Sample s = fly(model, recorded);
+  const ChainResult s = fly(model, recorded);
   EXPECT_EQ(s.flags.bits(), 0U);
   EXPECT_EQ(s[Quantity::ambient_temperature], truth.T);
   EXPECT_NEAR(s[Quantity::corrected_airspeed], truth.v, 1e-10);
@@ -409,8 +406,8 @@ TEST(Air, RecordedAmbientIsKeptWithThermometer) {
   Recorded recorded = with(truth.recorded(), Quantity::ambient_temperature, truth.T + 1);
   Model model = truth.model();
   model.lams.approach = LamsApproach::with_temperature;
-  const Chain chain = build(model, recorded);
-  Sample s = fly(chain, recorded);
+  const Chain chain = build_chain(model, recorded);
+  ChainResult s = fly(chain, recorded);
   EXPECT_EQ(s[Quantity::ambient_temperature], truth.T + 1);
   // 0.237 hPa/K in the table of sensitivities, at 268.6 K; it falls as 1/T^2.
   EXPECT_NEAR(s[Quantity::lams_static_defect] - truth.defect(), 0.237 * std::pow(268.6 / 270.5, 2), 0.001);
@@ -451,7 +448,7 @@ TEST(Calibration, RecoversTheTrueTemperature) {
     Model model = air.model();
     model.lams.approach = approach;
     const bool from_ambient = approach == LamsApproach::with_temperature;
-    const Sample s = fly(model, from_ambient ? air.recorded_ambient() : air.recorded());
+    const ChainResult s = fly(model, from_ambient ? air.recorded_ambient() : air.recorded());
     EXPECT_EQ(s.flags.bits(), 0U);
     EXPECT_NEAR(s[Quantity::ambient_temperature], air.T, 1e-10);
     EXPECT_NEAR(s[Quantity::corrected_airspeed], air.v, 1e-10);
@@ -466,7 +463,7 @@ TEST(Calibration, RecoversTheTrueTemperature) {
 TEST(Calibration, IsAppliedOnce) {
   const Miscalibrated air;
   const Recorded wet = with(air.recorded(), Quantity::vapor_pressure, 20.0);
-  const Sample plain = fly(air.Truth::model(), wet), s = fly(air.model(), wet);
+  const ChainResult plain = fly(air.Truth::model(), wet), s = fly(air.model(), wet);
   EXPECT_TRUE(s.has(Quality::humidity_limited));
   const double t = plain[Quantity::ambient_temperature] - 273.15;
   // Warmer air holds more vapour, which changes the Mach number by a few parts in 1e5: 1 mK.
@@ -510,7 +507,7 @@ TEST(Calibration, MissingInputGivesAMissingTemperature) {
     Model own = model;
     if (recorded.count(Quantity::ambient_temperature) > 0) own.lams.approach = LamsApproach::with_temperature;
     EXPECT_EQ(fly(own, with(recorded, Quantity::altitude, 3000)).flags.bits(), 0U);
-    const Sample s = fly(own, with(recorded, Quantity::altitude, missing));
+    const ChainResult s = fly(own, with(recorded, Quantity::altitude, missing));
     EXPECT_TRUE(s.has(Quality::effect_input_missing));
     EXPECT_TRUE(s.has(Quality::temperature_missing));
     EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
@@ -530,7 +527,7 @@ TEST(Calibration, RequiresATemperature) {
 TEST(Air, MachNumberNeedsNoThermometer) {
   Recorded recorded = without(truth.recorded(), Quantity::lams_airspeed);
   recorded = without(recorded, Quantity::recovery_temperature);
-  const Sample s = fly(truth.model(), recorded);
+  const ChainResult s = fly(truth.model(), recorded);
   EXPECT_NEAR(s[Quantity::corrected_mach], truth.mach(), 1e-12);
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
 }
@@ -543,7 +540,7 @@ TEST(FlowAngles, UnrecordedAnglesComeFromTheRadome) {
   recorded[Quantity::radome_dynamic_pressure] = 66;
   recorded[Quantity::attack_differential_pressure] = 66 * (truth.alpha - 5.776) / 15.031;
   recorded[Quantity::sideslip_differential_pressure] = 66 * (truth.beta + 0.5) / 20.0;
-  const Sample s = fly(model, recorded);
+  const ChainResult s = fly(model, recorded);
   EXPECT_NEAR(s[Quantity::attack], truth.alpha, 1e-13);
   EXPECT_NEAR(s[Quantity::sideslip], truth.beta, 1e-13);
   EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
@@ -556,7 +553,7 @@ TEST(FlowAngles, ImpossibleAngleOfTheRadomeIsMissing) {
   Recorded recorded = without(truth.recorded(), Quantity::attack);
   recorded[Quantity::radome_dynamic_pressure] = 1.0;
   recorded[Quantity::attack_differential_pressure] = 23.43;
-  const Sample s = fly(model, recorded);
+  const ChainResult s = fly(model, recorded);
   EXPECT_TRUE(std::isnan(s[Quantity::attack]));
   EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
   EXPECT_TRUE(s.has(Quality::lams_missing));
@@ -568,7 +565,7 @@ TEST(FlowAngles, GvAttackDependsOnTheMachNumber) {
   Recorded recorded = without(truth.recorded(), Quantity::attack);
   recorded[Quantity::radome_dynamic_pressure] = 66;
   recorded[Quantity::attack_differential_pressure] = -9.9;
-  const Sample s = fly(model, recorded);
+  const ChainResult s = fly(model, recorded);
   EXPECT_NEAR(s[Quantity::attack], 5.5156 - 0.15 * (19.07 + 2.08 * s[Quantity::mach]), 1e-13);
   EXPECT_NEAR(s[Quantity::mach], truth.mach(), 0.01);
 }
@@ -582,7 +579,7 @@ TEST(FlowAngles, ARecordedAnglePrecedesTheRadome) {
 TEST(Lams, WorksWithoutSideslip) {
   Truth straight;
   straight.beta = 0;
-  const Sample s = fly(straight.model(), without(straight.recorded(), Quantity::sideslip));
+  const ChainResult s = fly(straight.model(), without(straight.recorded(), Quantity::sideslip));
   EXPECT_NEAR(s[Quantity::lams_static_defect], straight.defect(), 1e-9);
 }
 
@@ -597,8 +594,8 @@ TEST(Lams, ApproachesAgree) {
 TEST(Lams, CorrectionReturnsAirspeedAndTemperature) {
   Recorded warm = truth.recorded();
   warm[Quantity::recovery_temperature] += 0.5;
-  const Chain chain = build(truth.model(), warm);
-  Sample s = fly(chain, warm);
+  const Chain chain = build_chain(truth.model(), warm);
+  ChainResult s = fly(chain, warm);
   chain.correct(s.state, s[Quantity::lams_static_defect], s.flags);
   chain.air(s.state, chain.parameters().data(), s.flags);
   chain.lams_air(s.state, chain.parameters().data(), s.flags);
@@ -626,7 +623,7 @@ TEST(Upstream, RecoveryFactorHeatsTheThermometer) {
   const Model wrong = with(truth.model(), catalogued("recovery-factor", {0.01}));
   Model law = truth.model();
   law.recovery.coefficients[0] += 0.01;
-  const Sample s = fly(wrong, truth.recorded()), expected = fly(law, truth.recorded());
+  const ChainResult s = fly(wrong, truth.recorded()), expected = fly(law, truth.recorded());
   EXPECT_NEAR(s[Quantity::lams_static_defect], expected[Quantity::lams_static_defect], 1e-12);
   EXPECT_NEAR(s[Quantity::ambient_temperature], expected[Quantity::ambient_temperature], 1e-12);
   EXPECT_EQ(s[Quantity::corrected_static_pressure], expected[Quantity::corrected_static_pressure]);
@@ -639,7 +636,7 @@ TEST(Upstream, RecoveryFactorHeatsTheThermometer) {
 TEST(Upstream, StaticLagMovesBothPressuresAtThePorts) {
   const Model lagging = with(truth.model(), catalogued("static-lag", {0.15}));
   const Recorded climb = with(truth.recorded(), Quantity::static_pressure_rate, -1.2);
-  const Sample s = fly(lagging, climb), still = fly(truth.model(), climb);
+  const ChainResult s = fly(lagging, climb), still = fly(truth.model(), climb);
   for (const auto& [after, sign] : {std::pair{Quantity::port_static_pressure, -1.0},
                                     {Quantity::port_dynamic_pressure, 1.0},
                                     {Quantity::corrected_static_pressure, -1.0},
@@ -649,7 +646,7 @@ TEST(Upstream, StaticLagMovesBothPressuresAtThePorts) {
   // so LAMS loses all.
   EXPECT_EQ(s[Quantity::static_defect], still[Quantity::static_defect]);
   EXPECT_NEAR(s[Quantity::lams_static_defect] - still[Quantity::lams_static_defect], 0.18, 1e-9);
-  EXPECT_TRUE(build(lagging, truth.recorded()).derives(Quantity::static_pressure_rate));
+  EXPECT_TRUE(build_chain(lagging, truth.recorded()).derives(Quantity::static_pressure_rate));
 }
 
 // A record with the pressures of the radome in place of the angles, of which the ratios are -0.3 and 0.02.
@@ -661,7 +658,7 @@ Recorded radome_record() {
   return recorded;
 }
 
-Model radome_model() {
+Model model_with_radome() {
   Model model = with(truth.model(), catalogued("static-alpha", {0.02}));
   model.attack_radome = {4.9, 13.4, 0};
   model.sideslip_radome = {0.1, 11.8, 0};
@@ -670,9 +667,9 @@ Model radome_model() {
 
 TEST(Upstream, RadomeRatioMovesEffectsAndAttackAngle) {
   // Sensitivity 5 % high, zero 0.01 high, and 0.005 higher each hour: at two hours 0.95 (-0.3) - 0.02.
-  const Model drifting = with(radome_model(), catalogued("adif-drift", {0.05, 0.01, 0.005}));
+  const Model drifting = with(model_with_radome(), catalogued("adif-drift", {0.05, 0.01, 0.005}));
   const Recorded recorded = with(radome_record(), Quantity::time, 7200);
-  const Sample s = fly(drifting, recorded), still = fly(radome_model(), recorded);
+  const ChainResult s = fly(drifting, recorded), still = fly(model_with_radome(), recorded);
   EXPECT_NEAR(s[Quantity::attack_ratio], -0.305, 1e-12);
   EXPECT_NEAR(s[Quantity::attack] - still[Quantity::attack], 13.4 * -0.005, 1e-12);
   const double p = recorded.at(Quantity::static_pressure);
@@ -683,8 +680,8 @@ TEST(Upstream, RadomeRatioMovesEffectsAndAttackAngle) {
 }
 
 TEST(Upstream, RadomePressureChangesBothRatios) {
-  const Model with_loss = with(radome_model(), written(EffectLocation::radome, "k", {"k"}, {2}));
-  const Sample s = fly(with_loss, radome_record()), still = fly(radome_model(), radome_record());
+  const Model with_loss = with(model_with_radome(), written(EffectLocation::radome, "k", {"k"}, {2}));
+  const ChainResult s = fly(with_loss, radome_record()), still = fly(model_with_radome(), radome_record());
   EXPECT_NEAR(s[Quantity::radome_dynamic_pressure], 70, 1e-12);
   EXPECT_NEAR(s[Quantity::attack_ratio], -0.3 * 68 / 70, 1e-12);
   EXPECT_NEAR(s[Quantity::attack], 4.9 + 13.4 * -0.3 * 68 / 70, 1e-12);
@@ -694,8 +691,8 @@ TEST(Upstream, RadomePressureChangesBothRatios) {
 }
 
 TEST(Upstream, RadomeLossUsesTheUncorrectedAngles) {
-  const Model model = with(radome_model(), catalogued("qcr-angle", {0.0273, 0.0562}));
-  const Sample s = fly(model, radome_record()), still = fly(radome_model(), radome_record());
+  const Model model = with(model_with_radome(), catalogued("qcr-angle", {0.0273, 0.0562}));
+  const ChainResult s = fly(model, radome_record()), still = fly(model_with_radome(), radome_record());
   const double alpha = still[Quantity::attack], beta = still[Quantity::sideslip];
   EXPECT_NEAR(s[Quantity::radome_dynamic_pressure], 68 + 0.0273 * alpha * alpha + 0.0562 * beta * beta,
               1e-12);
@@ -703,7 +700,7 @@ TEST(Upstream, RadomeLossUsesTheUncorrectedAngles) {
 
 TEST(Upstream, RadomeRatioDoesNotChangeARecordedAngle) {
   const Recorded recorded = with(radome_record(), Quantity::attack, 2.5);
-  const Model drifting = with(radome_model(), written(EffectLocation::attack_ratio, "k", {"k"}, {0.1}));
+  const Model drifting = with(model_with_radome(), written(EffectLocation::attack_ratio, "k", {"k"}, {0.1}));
   EXPECT_EQ(fly(drifting, recorded)[Quantity::attack], 2.5);
   EXPECT_NEAR(fly(drifting, recorded)[Quantity::attack_ratio], -0.2, 1e-12);
 }
@@ -716,12 +713,12 @@ TEST(Upstream, NeglectedVapourAddedBackGivesMoistAir) {
                                         {Quantity::dew_point, 265.0},
                                         {Quantity::frost_point, 263.0}}) {
     const Recorded recorded = with(dry, humidity, value);
-    const Sample moist = fly(truth.model(), recorded);
+    const ChainResult moist = fly(truth.model(), recorded);
     Model model = truth.model();
     model.moist = false;
-    const Sample without_vapor = fly(model, recorded);
-    const Sample counted = fly(with(model, catalogued("humidity-neglected", {1.0})), recorded);
-    const Sample neutral = fly(with(model, catalogued("humidity-neglected", {0.0})), recorded);
+    const ChainResult without_vapor = fly(model, recorded);
+    const ChainResult counted = fly(with(model, catalogued("humidity-neglected", {1.0})), recorded);
+    const ChainResult neutral = fly(with(model, catalogued("humidity-neglected", {0.0})), recorded);
     EXPECT_EQ(without_vapor[Quantity::humidity], 0);
     for (const Quantity result : {Quantity::humidity, Quantity::corrected_mach, Quantity::ambient_temperature,
                                   Quantity::corrected_airspeed, Quantity::lams_static_defect}) {
@@ -748,7 +745,7 @@ TEST(Upstream, DryConstantsGiveALowDeltaP) {
 
 TEST(Upstream, HumidityErrorIsCorrected) {
   const Recorded high = with(truth.recorded(), Quantity::vapor_pressure, truth.e / 0.9);
-  const Sample s = fly(with(truth.model(), catalogued("humidity-error", {0.1})), high);
+  const ChainResult s = fly(with(truth.model(), catalogued("humidity-error", {0.1})), high);
   EXPECT_NEAR(s[Quantity::humidity], truth.e / truth.p, 1e-14);
 }
 
@@ -767,7 +764,7 @@ TEST(Upstream, ClockSkewShiftsTheLaser) {
   const Model model = with(truth.model(), catalogued("clock-skew", {0.5}));
   Recorded recorded = truth.recorded();
   recorded[Quantity::airspeed_rate] = 0.4;
-  const Sample s = fly(model, recorded);
+  const ChainResult s = fly(model, recorded);
   const Model shifted = with(
       truth.model(), written(EffectLocation::beam_speed, "k", {"k"}, {0.5 * s[Quantity::airspeed_rate]}));
   EXPECT_NEAR(s[Quantity::lams_static_defect], fly(shifted, recorded)[Quantity::lams_static_defect], 1e-12);
@@ -782,7 +779,7 @@ TEST(Upstream, EffectsOnTheBeamNeedNoInputWithoutALaser) {
   const Model own = with(model, written(EffectLocation::beam_azimuth, "k * ROLLX", {"k"}, {0.1}));
   const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
   for (const Model& each : {model, own}) {
-    const Chain chain = build(each, recorded);
+    const Chain chain = build_chain(each, recorded);
     EXPECT_FALSE(chain.acts(EffectLocation::beam_speed));
     EXPECT_TRUE(chain.extra_names().empty());
     EXPECT_EQ(chain.parameters().size(), each.effects.size()) << "the coefficients keep their places";
@@ -800,7 +797,7 @@ TEST(Upstream, EffectsOnTheRadomeNeedItsPressures) {
 TEST(Formula, ActsAtEveryLocation) {
   const auto change = [](EffectLocation location, double amount, Quantity of) {
     const Model model = with(truth.model(), written(location, "k", {"k"}, {amount}));
-    EXPECT_TRUE(build(model, truth.recorded()).acts(location));
+    EXPECT_TRUE(build_chain(model, truth.recorded()).acts(location));
     return fly(model, truth.recorded())[of] - fly(truth.model(), truth.recorded())[of];
   };
   EXPECT_NEAR(change(EffectLocation::static_transducer, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
@@ -841,7 +838,7 @@ TEST(Formula, ReadsFileVariablesAndRoles) {
                                   {2.0, 0.001}));
   model.effects.push_back(written(EffectLocation::static_defect, "m * ENGTRQ", {"m"}, {0.5}));
   const Recorded recorded = truth.recorded();
-  const Chain chain = build(model, recorded);
+  const Chain chain = build_chain(model, recorded);
   EXPECT_THAT(chain.extra_names(), ElementsAre("ENGTRQ", "FLAP2"));
   Recorded more = recorded;
   more[pcor::extra_quantity(0)] = 30;
@@ -849,7 +846,7 @@ TEST(Formula, ReadsFileVariablesAndRoles) {
   const double p = recorded.at(Quantity::static_pressure);
   EXPECT_NEAR(fly(chain, more)[Quantity::static_defect], 0.005 * p + 2 * 0.3 + 0.001 * p + 15, 1e-12);
   // Without one of them there is no delta-p.
-  const Sample s = fly(chain, recorded);
+  const ChainResult s = fly(chain, recorded);
   EXPECT_TRUE(std::isnan(s[Quantity::static_defect]));
   EXPECT_TRUE(s.has(Quality::effect_input_missing));
 }
@@ -925,7 +922,7 @@ TEST(QualityBits, EachCauseSetsItsBitAndRemovesResults) {
            {Quality::tapered, Quantity::dynamic_pressure, 30.0, {}},
            {Quality::outside_domain, Quantity::dynamic_pressure, 10.0, {}},
            {Quality::outside_domain, Quantity::dynamic_pressure, 130.0, {}}}) {
-    const Sample s = fly(full_model(), with(full_record(), changed, to));
+    const ChainResult s = fly(full_model(), with(full_record(), changed, to));
     SCOPED_TRACE(std::string(info_of(changed).name) + " = " + std::to_string(to));
     EXPECT_TRUE(s.has(bit));
     for (const Quantity quantity : gone) EXPECT_TRUE(std::isnan(s[quantity])) << info_of(quantity).name;
@@ -938,7 +935,7 @@ TEST(QualityBits, EachCauseSetsItsBitAndRemovesResults) {
 TEST(QualityBits, OtherCausesDoNotSetABit) {
   const Quality never[] = {Quality::after_gap, Quality::corrected_with_lams};  // the loop's own
   for (const double q : {missing, -1.0, 0.0, 10.0, 66.0, 200.0}) {
-    const Sample s = fly(full_model(), with(full_record(), Quantity::dynamic_pressure, q));
+    const ChainResult s = fly(full_model(), with(full_record(), Quantity::dynamic_pressure, q));
     for (const Quality bit : never) EXPECT_FALSE(s.has(bit)) << q;
     EXPECT_FALSE(s.has(Quality::static_pressure_missing)) << q;
     EXPECT_FALSE(s.has(Quality::impossible_static_pressure)) << q;
@@ -955,7 +952,7 @@ TEST(QualityBits, OtherCausesDoNotSetABit) {
 TEST(QualityBits, DefectAboveDynamicPressureSetsABit) {
   Model model = truth.model();
   model.effects = {catalogued("static-constant", {0.02})};
-  const Sample s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, 10.0));
+  const ChainResult s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, 10.0));
   EXPECT_TRUE(s.has(Quality::defect_exceeds_dynamic_pressure));
   EXPECT_FALSE(s.has(Quality::impossible_dynamic_pressure)) << "the dynamic pressure itself is in order";
   EXPECT_TRUE(std::isnan(s[Quantity::static_defect]));
@@ -971,7 +968,7 @@ TEST(QualityBits, DefectBelowNegativeDynamicPressureSetsABit) {
   model.effects = {catalogued("static-constant", {-9.99 / p})};
   EXPECT_NEAR(fly(model, slow)[Quantity::static_defect], -9.99, 1e-12);
   model.effects = {catalogued("static-constant", {-10.01 / p})};
-  const Sample s = fly(model, slow);
+  const ChainResult s = fly(model, slow);
   EXPECT_TRUE(s.has(Quality::defect_exceeds_dynamic_pressure));
   for (const Quantity gone : {Quantity::static_defect, Quantity::corrected_static_pressure,
                               Quantity::corrected_dynamic_pressure, Quantity::corrected_airspeed})
@@ -989,7 +986,7 @@ TEST(QualityBits, ImplausibleDefectInFlightIsOutsideTheDomain) {
     for (const double sign : {1.0, -1.0}) {
       Model model = truth.model();
       model.effects = {catalogued("static-constant", {sign * part * q / p})};
-      const Sample s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, q));
+      const ChainResult s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, q));
       EXPECT_EQ(s.has(Quality::outside_domain), is_implausible) << q << ' ' << sign * part;
       EXPECT_NEAR(s[Quantity::static_defect], sign * part * q, 1e-12) << "the value is kept";
     }
@@ -1002,7 +999,7 @@ TEST(QualityBits, LaserDefectAboveDynamicPressureIsRejected) {
   const double beam = truth.recorded()[Quantity::lams_airspeed];
   EXPECT_FALSE(std::isnan(fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed,
                                                   0.5 * beam))[Quantity::lams_static_defect]));
-  const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed, 1.6 * beam));
+  const ChainResult s = fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed, 1.6 * beam));
   EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
   EXPECT_TRUE(s.has(Quality::lams_missing));
 }
@@ -1022,12 +1019,12 @@ TEST(Ramp, NoiseGivesNoAirspeedAndNoWrongPressure) {
       Recorded recorded = with(without(truth.recorded(), Quantity::lams_airspeed),
                                Quantity::attack_differential_pressure, 0.0);
       recorded[Quantity::radome_dynamic_pressure] = 0.0;
-      const Chain chain = build(model, recorded);
+      const Chain chain = build_chain(model, recorded);
       for (int i = 0; i < 45000; ++i) {
         for (const Quantity pressure : {Quantity::dynamic_pressure, Quantity::radome_dynamic_pressure,
                                         Quantity::attack_differential_pressure})
           recorded[pressure] = noise(engine);
-        const Sample s = fly(chain, recorded);
+        const ChainResult s = fly(chain, recorded);
         ASSERT_TRUE(s.has(Quality::no_airflow));
         ASSERT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
         ASSERT_TRUE(std::isnan(s[Quantity::corrected_mach]));
@@ -1047,7 +1044,7 @@ TEST(Ramp, AirspeedNeedsAMinimumDynamicPressure) {
   EXPECT_FALSE(at(2.01).has(Quality::no_airflow));
   // v = (2 q/rho)^(1/2), rho = p/(R T): 2 q/p R T; compressible flow and moist air are 1e-3 of it.
   const double p = truth.recorded()[Quantity::static_pressure];
-  const Sample s = at(2.01);
+  const ChainResult s = at(2.01);
   EXPECT_NEAR(s[Quantity::corrected_airspeed],
               std::sqrt(2 * 2.01 / p * 287.05 * s[Quantity::ambient_temperature]), 0.03);
   model.policy.min_dynamic_pressure = 0.0;
@@ -1062,7 +1059,7 @@ TEST(Ramp, CorrectedPressureDecidesOnTheAirflowUnderATaper) {
   const Recorded recorded = with(truth.recorded(), Quantity::dynamic_pressure, 1.9);
   for (const auto& [a0, flows] : {std::pair{-0.0005, true}, {0.0, false}}) {
     model.effects = {catalogued("static-constant", {a0})};
-    const Sample s = fly(model, recorded);
+    const ChainResult s = fly(model, recorded);
     EXPECT_EQ(s.has(Quality::no_airflow), !flows) << a0;
     EXPECT_EQ(std::isnan(s[Quantity::corrected_airspeed]), !flows) << a0;
   }
@@ -1172,7 +1169,7 @@ TEST(Build, MissingLamsInputIsRefused) {
 TEST(Build, ErrorListsMissingRoles) {
   const auto error_of = [](const Model& model) {
     BindingError error;
-    EXPECT_FALSE(Chain::build(model, roles(Truth().recorded()), &error).has_value());
+    EXPECT_FALSE(Chain::build(model, roles_of(Truth().recorded()), &error).has_value());
     return error;
   };
   BindingError error = error_of(with({}, catalogued("qcr-angle", {0.0})));
@@ -1191,8 +1188,8 @@ TEST(Build, WorksWithoutAnErrorString) { EXPECT_FALSE(Chain::build({}, {}, nullp
 
 TEST(Chain, ThreadsCanShareIt) {
   // It stores no state of a sample, so that loops of several rates and threads of a batch share one.
-  const Chain chain = build(full_model(), full_record());
-  const Sample alone = fly(chain, full_record());
+  const Chain chain = build_chain(full_model(), full_record());
+  const ChainResult alone = fly(chain, full_record());
   std::vector<double> found(4);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -1217,8 +1214,8 @@ TEST(Chain, CompilesForAnotherScalarType) {
                                           EffectLocation::temperature, EffectLocation::pitot})
       model.effects.push_back(
           written(location, "k * if(attack > 0, sqrt(abs(attack)), tanh(attack))", {"k"}, {0.01}));
-    const Chain chain = build(model, full_record());
-    const Sample expected = fly(chain, full_record());
+    const Chain chain = build_chain(model, full_record());
+    const ChainResult expected = fly(chain, full_record());
 
     State<Formulas> state;
     for (const auto& [quantity, value] : full_record()) state[quantity] = Formulas(value);
@@ -1248,13 +1245,13 @@ TEST(Additions, EqualAConstantEffectAtTheSameLocation) {
   for (std::size_t i = 0; i < pcor::location_count; ++i) {
     const auto location = static_cast<EffectLocation>(i);
     SCOPED_TRACE(info_of(location).name);
-    const Sample by_effect = fly(with(model, written(location, "k", {"k"}, {0.01})), recorded);
+    const ChainResult by_effect = fly(with(model, written(location, "k", {"k"}, {0.01})), recorded);
     model.additions = {location};
-    Chain chain = build(model, recorded);
+    Chain chain = build_chain(model, recorded);
     ASSERT_EQ(chain.parameters().back(), 0.0);
     std::vector<double> parameters = chain.parameters();
     parameters.back() = 0.01;
-    Sample added;
+    ChainResult added;
     for (const auto& [quantity, value] : recorded) added.state[quantity] = value;
     chain.measure(added.state, parameters.data(), added.flags);
     added.state[Quantity::static_defect] = chain.static_defect(added.state, parameters.data(), added.flags);
@@ -1288,10 +1285,10 @@ TEST(Additions, UnusedLocationsNeedAndChangeNoData) {
   // A model whose angle of attack is recorded reads no radome; one without a laser has no beam.
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
   Model model = with({}, catalogued("static-attack", {0.001}));
-  const Sample before = fly(model, recorded);
+  const ChainResult before = fly(model, recorded);
   model.additions = {EffectLocation::radome, EffectLocation::attack_ratio, EffectLocation::beam_speed,
                      EffectLocation::beam_azimuth};
-  const Chain chain = build(model, recorded);
+  const Chain chain = build_chain(model, recorded);
   for (const Quantity input : {Quantity::radome_dynamic_pressure, Quantity::attack_ratio})
     EXPECT_FALSE(chain.needs(input));
   EXPECT_EQ(fly(chain, recorded)[Quantity::corrected_static_pressure],
@@ -1302,8 +1299,8 @@ TEST(EffectValue, EffectValuesSumToTheDefect) {
   const Recorded recorded = Truth().recorded();
   Model model = with({}, catalogued("static-qp", {0.03}));
   model = with(model, written(EffectLocation::static_defect, "k * static_pressure", {"k"}, {0.004}));
-  const Chain chain = build(model, recorded);
-  const Sample sample = fly(chain, recorded);
+  const Chain chain = build_chain(model, recorded);
+  const ChainResult sample = fly(chain, recorded);
   const double by_hand = chain.effect_value(0, sample.state, chain.parameters().data()) +
                          chain.effect_value(1, sample.state, chain.parameters().data() + 1);
   EXPECT_DOUBLE_EQ(sample[Quantity::static_defect], by_hand);
@@ -1313,13 +1310,13 @@ TEST(EffectValue, EffectValuesSumToTheDefect) {
 
 TEST(EffectValue, IsZeroWithoutABeam) {
   const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
-  const Chain chain = build(with({}, catalogued("lams-scale", {0.01})), recorded);
+  const Chain chain = build_chain(with({}, catalogued("lams-scale", {0.01})), recorded);
   EXPECT_EQ(chain.effect_value(0, fly(chain, recorded).state, chain.parameters().data()), 0.0);
 }
 
 TEST(WithEffect, EqualsTheChainWithTheAddedEffect) {
   const Recorded recorded = with(full_record(), Quantity::roll, 20.0);
-  const Chain shorter = build(Truth().model(), recorded);
+  const Chain shorter = build_chain(Truth().model(), recorded);
   for (const ModelEffect& effect : {catalogued("static-lag", {0.2}), catalogued("psfd-bias", {0.3}),
                                     written(EffectLocation::total_line, "k * roll / 90", {"k"}, {0.5})}) {
     const auto longer = shorter.with_effect(effect, nullptr);

@@ -6,11 +6,12 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <ostream>
 #include <string>
 
+#include "realtime/sample.hpp"
+#include "support/constants.hpp"
 #include "support/uncertain_in_everything.hpp"
 
 namespace {
@@ -20,21 +21,10 @@ using pcor::Loop;
 using pcor::Model;
 using pcor::ModelEffect;
 using pcor::Quantity;
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-using Sample = std::map<Quantity, double>;
-
-// Level flight at 700 hPa, with LAMS.
-const Sample level{{Quantity::static_pressure, 700.0},
-                   {Quantity::dynamic_pressure, 67.6},
-                   {Quantity::radome_dynamic_pressure, 67.1},
-                   {Quantity::attack_differential_pressure, -15.3},
-                   {Quantity::sideslip_differential_pressure, 1.2},
-                   {Quantity::recovery_temperature, 280.0},
-                   {Quantity::vapor_pressure, 4.2},
-                   {Quantity::lams_airspeed, 117.0}};
+using pcor::test::infinity;
+using pcor::test::level;
+using pcor::test::missing;
+using pcor::test::Sample;
 
 /// A role, and a value that a flight has of it.
 struct RoleCase {

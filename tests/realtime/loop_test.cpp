@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <map>
 #include <random>
 #include <sstream>
 #include <stdexcept>
+
+#include "realtime/sample.hpp"
+#include "support/constants.hpp"
 
 namespace {
 
@@ -24,30 +26,24 @@ using pcor::Quality;
 using pcor::QualityFlags;
 using pcor::Quantity;
 using pcor::State;
+using pcor::test::infinity;
+using pcor::test::level;
+using pcor::test::missing;
+using pcor::test::roles_of;
+using pcor::test::Sample;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsNan;
 using testing::Not;
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-using Sample = std::map<Quantity, double>;
-
-std::vector<Quantity> roles(const Sample& sample) {
-  std::vector<Quantity> result;
-  for (const auto& [quantity, value] : sample) result.push_back(quantity);
-  return result;
-}
-
-Sample with(Sample sample, const Sample& changes) {
+Sample with_changes(Sample sample, const Sample& changes) {
   for (const auto& [quantity, value] : changes) sample[quantity] = value;
   return sample;
 }
 
 Loop build(const Model& model, const Sample& sample, double rate, CorrectWith with = CorrectWith::model) {
   std::string error;
-  auto loop = Loop::build(model, roles(sample), rate, &error, with);
+  auto loop = Loop::build(model, roles_of(sample), rate, &error, with);
   if (!loop) throw std::runtime_error(error);
   return std::move(*loop);
 }
@@ -94,7 +90,8 @@ ModelEffect formula(EffectLocation location, std::string text, std::vector<std::
   return effect;
 }
 
-// A C-130 with LAMS, flow angles from the radome, and humidity.
+// A C-130 with LAMS, flow angles from the radome, and humidity. In `level` the laser's airspeed implies a
+// delta-p near that of this model.
 Model c130() {
   Model model;
   model.effects = {
@@ -107,17 +104,7 @@ Model c130() {
   return model;
 }
 
-// Level flight at 700 hPa. The laser's airspeed implies a delta-p near that of the model.
-const Sample level{{Quantity::static_pressure, 700.0},
-                   {Quantity::dynamic_pressure, 67.6},
-                   {Quantity::radome_dynamic_pressure, 67.1},
-                   {Quantity::attack_differential_pressure, -15.3},
-                   {Quantity::sideslip_differential_pressure, 1.2},
-                   {Quantity::recovery_temperature, 280.0},
-                   {Quantity::vapor_pressure, 4.2},
-                   {Quantity::lams_airspeed, 117.0}};
-
-const std::vector<Quantity> results{
+const std::vector<Quantity> all_results{
     Quantity::static_defect,        Quantity::lams_static_defect, Quantity::corrected_static_pressure,
     Quantity::corrected_mach,       Quantity::humidity,           Quantity::corrected_dynamic_pressure,
     Quantity::ambient_temperature,  Quantity::corrected_airspeed, Quantity::lams_temperature,
@@ -136,7 +123,7 @@ std::uint32_t own_bits(const Loop& loop) {
 
 // All results of two loops agree to the last bit, missing ones too.
 void expect_same(const Loop& loop, const Loop& expected) {
-  for (const Quantity result : results) {
+  for (const Quantity result : all_results) {
     const double value = loop.state()[result];
     const double requested = expected.state()[result];
     EXPECT_TRUE(value == requested || (std::isnan(value) && std::isnan(requested)))
@@ -230,7 +217,7 @@ TEST(LoopOrder, UndeclaredVariableIsRefused) {
 TEST(Loop, UnknownRecordedQuantityIsRefused) {
   std::string error;
   for (const Quantity wrong : {Quantity::count, pcor::extra_quantity(pcor::extra_capacity)}) {
-    std::vector<Quantity> recorded = roles(level);
+    std::vector<Quantity> recorded = roles_of(level);
     recorded.push_back(wrong);
     EXPECT_FALSE(Loop::build(c130(), recorded, 1.0, &error));
     EXPECT_THAT(error, HasSubstr(std::to_string(index(wrong))));
@@ -242,7 +229,7 @@ TEST(Loop, RecordedResultIsRefused) {
   std::string error;
   for (const Quantity result : {Quantity::port_static_pressure, Quantity::static_defect,
                                 Quantity::corrected_airspeed, Quantity::height_step}) {
-    std::vector<Quantity> recorded = roles(level);
+    std::vector<Quantity> recorded = roles_of(level);
     recorded.push_back(result);
     EXPECT_FALSE(Loop::build(c130(), recorded, 1.0, &error));
     EXPECT_THAT(error, HasSubstr(std::string(pcor::info_of(result).name)));
@@ -287,12 +274,12 @@ TEST(Loop, ImpossibleNumbersOfTheModelAreRefused) {
     Model model = c130();
     change(model);
     std::string error;
-    EXPECT_FALSE(Loop::build(model, roles(level), 1.0, &error)) << name;
+    EXPECT_FALSE(Loop::build(model, roles_of(level), 1.0, &error)) << name;
     EXPECT_NE(error, "") << name;
   }
   Model model = c130();
   model.domain = {{"mach", -infinity, 0.9}};
-  EXPECT_TRUE(Loop::build(model, roles(level), 1.0, nullptr));
+  EXPECT_TRUE(Loop::build(model, roles_of(level), 1.0, nullptr));
 }
 
 // Above Mach 1 the equations do not hold: swapped pressures would give Mach 2.2.
@@ -306,7 +293,8 @@ TEST(Loop, SupersonicPressuresGiveNoResult) {
     model.policy.taper_below = taper;
     Loop loop = build(model, recorded, 1.0);
     for (const auto& [p, q] : {std::pair{67.6, 700.0}, {250.0, 260.0}, {250.0, 223.3}}) {
-      run(loop, with(recorded, {{Quantity::static_pressure, p}, {Quantity::dynamic_pressure, q}}), 0.0);
+      run(loop, with_changes(recorded, {{Quantity::static_pressure, p}, {Quantity::dynamic_pressure, q}}),
+          0.0);
       for (const Quantity result : {Quantity::static_defect, Quantity::corrected_static_pressure,
                                     Quantity::corrected_mach, Quantity::corrected_airspeed})
         EXPECT_THAT(loop.state()[result], IsNan()) << pcor::info_of(result).name << ' ' << q;
@@ -314,7 +302,9 @@ TEST(Loop, SupersonicPressuresGiveNoResult) {
       loop.reset();
     }
     // Mach 0.97
-    run(loop, with(recorded, {{Quantity::static_pressure, 250.0}, {Quantity::dynamic_pressure, 208.0}}), 0.0);
+    run(loop,
+        with_changes(recorded, {{Quantity::static_pressure, 250.0}, {Quantity::dynamic_pressure, 208.0}}),
+        0.0);
     EXPECT_EQ(own_bits(loop), bits({Quality::dry_air_assumed}));
     EXPECT_NEAR(loop.state()[Quantity::corrected_mach], 0.96, 0.02);
   }
@@ -322,11 +312,11 @@ TEST(Loop, SupersonicPressuresGiveNoResult) {
 
 // The limit of process is 5 percent.
 TEST(Loop, ExtendedFlapsAreOutsideTheDomain) {
-  Sample recorded = with(level, {{Quantity::flaps, 0.0}});
+  Sample recorded = with_changes(level, {{Quantity::flaps, 0.0}});
   recorded.erase(Quantity::lams_airspeed);
   const auto is_flagged = [&](const Model& model, double flaps) {
     Loop loop = build(model, recorded, 1.0);
-    run(loop, with(recorded, {{Quantity::flaps, flaps}}), 0.0);
+    run(loop, with_changes(recorded, {{Quantity::flaps, flaps}}), 0.0);
     return loop.quality().has(Quality::outside_domain);
   };
   EXPECT_FALSE(is_flagged(c130(), pcor::flaps_in));
@@ -381,7 +371,8 @@ TEST(Loop, ReproducesEquation18) {
   const double heating = std::pow(767.6 / (700.0 + defect), 2.0 / 7.0 / (1.0 + humidity / 7.0)) - 1.0;
   EXPECT_NEAR(s[Quantity::corrected_mach], std::sqrt(5.0 * (1.0 + humidity / 5.0) * heating), 1e-12);
   EXPECT_EQ(own_bits(loop), 0U);
-  for (const Quantity result : results) EXPECT_TRUE(std::isfinite(s[result])) << pcor::info_of(result).name;
+  for (const Quantity result : all_results)
+    EXPECT_TRUE(std::isfinite(s[result])) << pcor::info_of(result).name;
 }
 
 TEST(Loop, ConstantFlightGivesTheSameAtAnyRate) {
@@ -402,7 +393,7 @@ TEST(Loop, LoopsHaveIndependentStates) {
   Model model = c130();
   model.effects.push_back({"static-lag", {0.15}});
   const auto climb = [](double time, double rate) {
-    return with(level, {{Quantity::static_pressure, 700.0 - rate * time + 0.1 * std::sin(time)}});
+    return with_changes(level, {{Quantity::static_pressure, 700.0 - rate * time + 0.1 * std::sin(time)}});
   };
   Loop alone_slow = build(model, level, 1.0), alone_fast = build(model, level, 25.0);
   Loop slow = build(model, level, 1.0), fast = build(model, level, 25.0);
@@ -421,9 +412,9 @@ TEST(Loop, ComputesRatesForEffects) {
   model.effects.push_back({"temp-lag", {2.0}});
   model.effects.push_back({"clock-skew", {0.5}});
   const auto sample = [](double time) {
-    return with(level, {{Quantity::static_pressure, 700.0 - 0.8 * time},
-                        {Quantity::dynamic_pressure, 67.6 + 0.5 * time},
-                        {Quantity::recovery_temperature, 280.0 - 0.06 * time}});
+    return with_changes(level, {{Quantity::static_pressure, 700.0 - 0.8 * time},
+                                {Quantity::dynamic_pressure, 67.6 + 0.5 * time},
+                                {Quantity::recovery_temperature, 280.0 - 0.06 * time}});
   };
   for (const double rate : {1.0, 25.0}) {
     Loop loop = build(model, level, rate);
@@ -494,7 +485,7 @@ TEST(LoopOrder, WriterOfAQuantityWithARateIsRefused) {
 TEST(LoopOrder, WriterOfAnInputOfTheAirspeedWithARateIsRefused) {
   Model model = c130();
   model.effects.push_back({"clock-skew", {2.0}});
-  const Sample sample = with(level, {{Quantity::roll, 2.0}});
+  const Sample sample = with_changes(level, {{Quantity::roll, 2.0}});
   const auto error_of_writer = [&](Quantity quantity) {
     Loop loop = build(model, sample, 1.0);
     loop.add(own({quantity}, {quantity}, [quantity](State<double>& state) { state[quantity] *= 1.5; }));
@@ -519,9 +510,9 @@ TEST(LoopOrder, FunctorCorrectsALateLaser) {
   std::string error;
   ASSERT_TRUE(inside.order(&error)) << error;
   for (int i = 0; i < 20; ++i) {
-    const Sample sample = with(level, {{Quantity::dynamic_pressure, 67.6 + 0.5 * i}});
+    const Sample sample = with_changes(level, {{Quantity::dynamic_pressure, 67.6 + 0.5 * i}});
     run(inside, sample, i);
-    run(before, with(sample, {{Quantity::lams_airspeed, 1.01 * 117.0}}), i);
+    run(before, with_changes(sample, {{Quantity::lams_airspeed, 1.01 * 117.0}}), i);
   }
   EXPECT_TRUE(std::isfinite(inside.state()[Quantity::lams_static_defect]));
   expect_same(inside, before);
@@ -544,13 +535,13 @@ TEST(Loop, WetThermometerDriesAfterACloud) {
   Model model = c130();
   model.effects.push_back({"temp-wetting", {-2.0, 10.0}});
   for (const double rate : {1.0, 25.0}) {
-    const Sample dry = with(level, {{Quantity::liquid_water, 0.0}});
+    const Sample dry = with_changes(level, {{Quantity::liquid_water, 0.0}});
     Loop loop = build(model, dry, rate);
     EXPECT_EQ(loop.delay(), 0U) << "what was before is enough";
     run(loop, dry, 0.0);
     const double air = loop.state()[Quantity::ambient_temperature];
     int i = 1;
-    for (; i < 20 * rate; ++i) run(loop, with(level, {{Quantity::liquid_water, 0.4}}), i / rate);
+    for (; i < 20 * rate; ++i) run(loop, with_changes(level, {{Quantity::liquid_water, 0.4}}), i / rate);
     EXPECT_GT(loop.state()[Quantity::ambient_temperature], air + 1.7) << "2 K at the thermometer";
     for (; i < 30 * rate; ++i) run(loop, dry, i / rate);
     const double left = (loop.state()[Quantity::ambient_temperature] - air) / 2.0;
@@ -559,7 +550,7 @@ TEST(Loop, WetThermometerDriesAfterACloud) {
     run(loop, dry, i / rate + 100.0);
     EXPECT_EQ(loop.state()[Quantity::ambient_temperature], air)
         << "after a gap nothing is known of the cloud";
-    run(loop, with(level, {{Quantity::liquid_water, missing}}), i / rate + 100.0 + 1.0 / rate);
+    run(loop, with_changes(level, {{Quantity::liquid_water, missing}}), i / rate + 100.0 + 1.0 / rate);
     EXPECT_TRUE(std::isnan(loop.state()[Quantity::ambient_temperature]));
     EXPECT_TRUE(loop.quality().has(Quality::temperature_missing));
   }
@@ -659,7 +650,8 @@ Lagged run_lagged(double rate, const std::vector<double>& times) {
   Loop loop = build(model, sample, rate);
   Lagged result;
   for (const double time : times) {
-    run(loop, with(sample, {{Quantity::static_pressure, 700.0 + 2.0 * (time - times.front())}}), time);
+    run(loop, with_changes(sample, {{Quantity::static_pressure, 700.0 + 2.0 * (time - times.front())}}),
+        time);
     const State<double>& state = loop.state();
     result.defects.push_back(state[Quantity::port_static_pressure] - state[Quantity::static_pressure]);
     result.bits.push_back(loop.quality().bits());
@@ -723,7 +715,7 @@ TEST(LoopInterval, UnevenStepInterruptsTheLaserFilterAtTheSameSamplesWithALag) {
     std::vector<double> gaps;
     for (const double time : steps({{300, 1.0}, {1, 1.2}, {300, 1.0}})) {
       // A laser with one value for five minutes is frozen.
-      run(loop, with(level, {{Quantity::lams_airspeed, 117.0 + 1e-6 * time}}), time);
+      run(loop, with_changes(level, {{Quantity::lams_airspeed, 117.0 + 1e-6 * time}}), time);
       const State<double>& state = loop.state();
       if (state[Quantity::time] > 150.0 && std::isnan(state[Quantity::filtered_lams_temperature]))
         gaps.push_back(state[Quantity::time]);
@@ -869,7 +861,8 @@ TEST(LoopFrozen, FrozenSensorIsIdentifiedAndALaserMissing) {
   uncertainty.static_defect = 0.3;
   std::string error;
   for (const Quantity frozen : {Quantity::attack, Quantity::lams_airspeed}) {
-    std::optional<Loop> loop = Loop::build(model, roles(flown), 25.0, &error, CorrectWith::lams, uncertainty);
+    std::optional<Loop> loop =
+        Loop::build(model, roles_of(flown), 25.0, &error, CorrectWith::lams, uncertainty);
     ASSERT_TRUE(loop) << error;
     std::mt19937 random(1);
     std::normal_distribution<double> gauss(0.0, 0.05);
@@ -1093,7 +1086,7 @@ TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   // thermometer's.
   EXPECT_NEAR(s[Quantity::lams_temperature], s[Quantity::ambient_temperature], 1e-6);
 
-  const Sample unlocked = with(level, {{Quantity::lams_airspeed, missing}});
+  const Sample unlocked = with_changes(level, {{Quantity::lams_airspeed, missing}});
   run(with_model, unlocked, 1.0);
   run(with_lams, unlocked, 1.0);
   expect_same(with_lams, with_model);
@@ -1110,7 +1103,7 @@ TEST(Loop, EffectOnTheAttackRatioReadsTheSideslipOfItsOwnSample) {
   effect.parameter_names = {"c"};
   effect.parameters = {0.01};
   model.effects.push_back(effect);
-  const Sample turned = with(level, {{Quantity::sideslip_differential_pressure, 20.0}});
+  const Sample turned = with_changes(level, {{Quantity::sideslip_differential_pressure, 20.0}});
   Loop after_another = build(model, level, 1.0), alone = build(model, level, 1.0);
   run(after_another, level, 0.0);
   run(after_another, turned, 1.0);
@@ -1165,7 +1158,7 @@ TEST(LoopLams, LaserWithoutLockIsReplacedByTheModel) {
   double time = 0.0;
   for (const auto& [speed, is_locked] :
        {std::pair{117.0, true}, {122.0, true}, {60.0, false}, {90.0, false}, {140.0, false}, {117.0, true}}) {
-    const Sample sample = with(level, {{Quantity::lams_airspeed, speed}});
+    const Sample sample = with_changes(level, {{Quantity::lams_airspeed, speed}});
     run(loop, sample, time);
     run(model, sample, time);
     time += 1.0;
@@ -1183,12 +1176,12 @@ TEST(LoopLams, LaserWithoutLockIsReplacedByTheModel) {
 TEST(LoopLams, SoundLaserCorrectsIfTheModelIsWrong) {
   Model model = c130();
   model.sideslip_radome = {};
-  const Sample sound = with(level, {{Quantity::attack, 3.0}, {Quantity::sideslip, 0.5}});
+  const Sample sound = with_changes(level, {{Quantity::attack, 3.0}, {Quantity::sideslip, 0.5}});
   Loop loop = build(model, sound, 1.0, CorrectWith::lams);
   double time = 0.0;
   for (const double radome : {67.1, 8.0, 5.0, 4.0, missing}) {
     SCOPED_TRACE(radome);
-    run(loop, with(sound, {{Quantity::radome_dynamic_pressure, radome}}), time++);
+    run(loop, with_changes(sound, {{Quantity::radome_dynamic_pressure, radome}}), time++);
     EXPECT_TRUE(loop.quality().has(Quality::corrected_with_lams));
     EXPECT_FALSE(loop.quality().has(Quality::lams_missing));
     // 4 hPa of the laser at 117 m/s.
@@ -1204,7 +1197,7 @@ TEST(LoopLams, UnlockedLaserHasNoResults) {
     for (const auto& [speed, is_locked] :
          {std::pair{117.0, true}, {80.0, false}, {90.0, false}, {140.0, false}, {170.0, false}}) {
       SCOPED_TRACE(speed);
-      run(loop, with(level, {{Quantity::lams_airspeed, speed}}), time++);
+      run(loop, with_changes(level, {{Quantity::lams_airspeed, speed}}), time++);
       EXPECT_EQ(loop.quality().has(Quality::lams_missing), !is_locked);
       // Saturation at the temperature of a wrong laser is not a limit of the humidity.
       EXPECT_FALSE(loop.quality().has(Quality::humidity_limited));
@@ -1212,7 +1205,7 @@ TEST(LoopLams, UnlockedLaserHasNoResults) {
         EXPECT_EQ(std::isnan(loop.state()[result]), !is_locked) << pcor::info_of(result).name;
     }
     // The temperature from LAMS replaces that of a failed thermometer.
-    run(loop, with(level, {{Quantity::recovery_temperature, missing}}), time);
+    run(loop, with_changes(level, {{Quantity::recovery_temperature, missing}}), time);
     EXPECT_NEAR(loop.state()[Quantity::lams_temperature], 261.0, 10.0);
     EXPECT_TRUE(loop.quality().has(Quality::lams_missing));
   }
@@ -1222,19 +1215,19 @@ TEST(LoopLams, IsRefusedWithoutLaserAirspeed) {
   Sample recorded = level;
   recorded.erase(Quantity::lams_airspeed);
   std::string error;
-  EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, &error, CorrectWith::lams));
+  EXPECT_FALSE(Loop::build(c130(), roles_of(recorded), 1.0, &error, CorrectWith::lams));
   EXPECT_EQ(error,
             "correction with LAMS needs the role 'lams_airspeed', which is not among the recorded "
             "quantities; add it, in a "
             "model file as a variable in [variables]");
-  EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, nullptr, CorrectWith::lams));
+  EXPECT_FALSE(Loop::build(c130(), roles_of(recorded), 1.0, nullptr, CorrectWith::lams));
 }
 
 // Approach 3 takes the radiometer's temperature, not the thermometer's that the loop might derive.
 TEST(LoopLams, RecordedAmbientIsUsedWithRecovery) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
-  Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
+  Sample radiometer = with_changes(level, {{Quantity::ambient_temperature, 274.0}});
   Loop both = build(model, radiometer, 1.0);
   run(both, radiometer, 0.0);
   EXPECT_EQ(both.state()[Quantity::ambient_temperature], 274.0);
@@ -1248,9 +1241,9 @@ TEST(LoopLams, RecordedAmbientIsUsedWithRecovery) {
 TEST(LoopLams, DefectBelowVacuumIsMissing) {
   Model model = c130();
   model.lams.approach = pcor::LamsApproach::with_temperature;
-  const Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
+  const Sample radiometer = with_changes(level, {{Quantity::ambient_temperature, 274.0}});
   Loop loop = build(model, radiometer, 1.0, CorrectWith::lams);
-  run(loop, with(radiometer, {{Quantity::lams_airspeed, 1e60}}), 0.0);
+  run(loop, with_changes(radiometer, {{Quantity::lams_airspeed, 1e60}}), 0.0);
   EXPECT_THAT(loop.state()[Quantity::lams_static_defect], IsNan());
   EXPECT_EQ(own_bits(loop), bits({Quality::lams_missing}));
 }
@@ -1261,8 +1254,6 @@ struct QualityCase {
   std::uint32_t expected;
   std::vector<Quantity> lost;  // NaN; all other results are finite
 };
-
-const std::vector<Quantity> everything = results;
 
 // Each way in which a sample can be bad, one at a time, in a loop where every stage is at work.
 TEST(LoopQuality, BadInputIsFlaggedAndRemovesOnlyDependentResults) {
@@ -1308,31 +1299,31 @@ TEST(LoopQuality, BadInputIsFlaggedAndRemovesOnlyDependentResults) {
       {"no attack",
        {{Quantity::attack_differential_pressure, missing}},
        bits({Q::effect_input_missing, Q::lams_missing}),
-       everything},
+       all_results},
       {"radome blocked",
        {{Quantity::radome_dynamic_pressure, 0.0}},
        bits({Q::effect_input_missing, Q::lams_missing, Q::impossible_radome_pressure}),
-       everything},
+       all_results},
       {"no static pressure",
        {{Quantity::static_pressure, missing}},
        bits({Q::static_pressure_missing, Q::lams_missing}),
-       everything},
+       all_results},
       {"no dynamic pressure",
        {{Quantity::dynamic_pressure, missing}},
        bits({Q::dynamic_pressure_missing, Q::lams_missing}),
-       everything},
+       all_results},
       {"static pressure of a fill value",
        {{Quantity::static_pressure, 1e30}},
        bits({Q::static_pressure_missing, Q::lams_missing}),
-       everything},
+       all_results},
       {"static pressure of almost nothing",
        {{Quantity::static_pressure, 1e-40}},
        bits({Q::impossible_static_pressure, Q::lams_missing, Q::dry_air_assumed}),
-       everything},
+       all_results},
       {"impossible static pressure",
        {{Quantity::static_pressure, -1.0}},
        bits({Q::impossible_static_pressure, Q::lams_missing}),
-       everything},
+       all_results},
   };
   Model model = c130();
   model.policy.taper_below = 40.0;
@@ -1342,9 +1333,9 @@ TEST(LoopQuality, BadInputIsFlaggedAndRemovesOnlyDependentResults) {
   double time = 0.0;
   for (const QualityCase& test : cases) {
     SCOPED_TRACE(test.name);
-    run(loop, with(level, test.changes), ++time);
+    run(loop, with_changes(level, test.changes), ++time);
     EXPECT_EQ(own_bits(loop), test.expected) << std::hex << own_bits(loop);
-    for (const Quantity result : results) {
+    for (const Quantity result : all_results) {
       const bool lost = std::count(test.lost.begin(), test.lost.end(), result) > 0;
       const double value = loop.state()[result];
       EXPECT_TRUE(lost ? std::isnan(value) : std::isfinite(value))
@@ -1359,7 +1350,7 @@ TEST(LoopQuality, HasNoAirspeedOnTheGround) {
   model.policy.taper_below = 40.0;
   Loop tapered = build(model, level, 1.0);
   const Sample ground =
-      with(level, {{Quantity::dynamic_pressure, -0.3}, {Quantity::radome_dynamic_pressure, -0.1}});
+      with_changes(level, {{Quantity::dynamic_pressure, -0.3}, {Quantity::radome_dynamic_pressure, -0.1}});
   run(strict, ground, 0.0);
   run(tapered, ground, 0.0);
   for (const Loop* loop : {&strict, &tapered}) {
@@ -1386,7 +1377,7 @@ TEST(LoopQuality, FlagsAnEffectThatDividesByZero) {
     EXPECT_EQ(loop.quality().has(Quality::effect_input_missing), location != EffectLocation::attack)
         << pcor::info_of(location).name;
     EXPECT_TRUE(loop.quality().has(Quality::lams_missing) || location == EffectLocation::static_defect);
-    for (const Quantity result : results) EXPECT_FALSE(std::isinf(loop.state()[result]));
+    for (const Quantity result : all_results) EXPECT_FALSE(std::isinf(loop.state()[result]));
     EXPECT_THAT(loop.state()[Quantity::corrected_airspeed],
                 location == EffectLocation::attack ? Not(IsNan()) : testing::Matcher<double>(IsNan()));
   }
@@ -1401,9 +1392,9 @@ TEST(Loop, KeepsTheTotalPressure) {
       const double p = 200.0 + 800.0 * unit(random);
       const double q = 20.0 + 150.0 * unit(random);
       run(loop,
-          with(level, {{Quantity::static_pressure, p},
-                       {Quantity::dynamic_pressure, q},
-                       {Quantity::lams_airspeed, 20.0 + 250.0 * unit(random)}}),
+          with_changes(level, {{Quantity::static_pressure, p},
+                               {Quantity::dynamic_pressure, q},
+                               {Quantity::lams_airspeed, 20.0 + 250.0 * unit(random)}}),
           i / 25.0);
       const double corrected_p = loop.state()[Quantity::corrected_static_pressure];
       const double corrected_q = loop.state()[Quantity::corrected_dynamic_pressure];
@@ -1481,9 +1472,10 @@ TEST(Loop, CalibratesARecordedTemperatureOnce) {
   Sample sample = level;
   sample.erase(Quantity::recovery_temperature);
   for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {
-    Loop loop = build(model, with(sample, {{Quantity::ambient_temperature, 270.0}}), 1.0, correct_with);
+    Loop loop =
+        build(model, with_changes(sample, {{Quantity::ambient_temperature, 270.0}}), 1.0, correct_with);
     for (int i = 0; i < 20; ++i) {
-      run(loop, with(sample, {{Quantity::ambient_temperature, 263.15 - 0.5 * i}}), i);
+      run(loop, with_changes(sample, {{Quantity::ambient_temperature, 263.15 - 0.5 * i}}), i);
       if (i < 6) continue;
       const double recorded = 263.15 - 0.5 * (i - 6);
       EXPECT_NEAR(loop.state()[Quantity::ambient_temperature], recorded + 0.55 + 0.01 * (recorded - 273.15),
@@ -1499,7 +1491,7 @@ TEST(Loop, FiltersTheTemperatureOfLams) {
     const int delay = static_cast<int>(pcor::LowPass::delay(rate));
     std::vector<double> unfiltered;
     for (int i = 0; i < 4 * delay; ++i) {
-      run(loop, with(level, {{Quantity::lams_airspeed, 117.0 + 0.02 * i / rate}}), i / rate);
+      run(loop, with_changes(level, {{Quantity::lams_airspeed, 117.0 + 0.02 * i / rate}}), i / rate);
       unfiltered.push_back(loop.state()[Quantity::lams_temperature]);
       if (i < 2 * delay) continue;
       // The temperature varies with the square of the airspeed: a curve of 2e-5 K/s2, which a filter with a
@@ -1526,11 +1518,11 @@ TEST(LoopGarbage, InfinityCountsAsMissing) {
     for (const auto& [role, value] : level) {
       for (const double garbage : {infinity, -infinity}) {
         SCOPED_TRACE(testing::Message() << pcor::info_of(role).name << " = " << garbage);
-        run(infinite, with(level, {{role, garbage}}), ++time);
-        run(absent, with(level, {{role, missing}}), time);
+        run(infinite, with_changes(level, {{role, garbage}}), ++time);
+        run(absent, with_changes(level, {{role, missing}}), time);
         expect_same(infinite, absent);
         EXPECT_NE(infinite.quality().bits(), 0U);
-        for (const Quantity result : results) EXPECT_FALSE(std::isinf(infinite.state()[result]));
+        for (const Quantity result : all_results) EXPECT_FALSE(std::isinf(infinite.state()[result]));
       }
     }
   }
@@ -1542,7 +1534,7 @@ TEST(LoopGarbage, InfinityCountsAsMissingInOtherRoles) {
                                          {Quantity::attack, 3.0},
                                          {Quantity::sideslip, 0.5},
                                          {Quantity::mach, 0.37}}) {
-    Sample recorded = with(level, {{role, good}});
+    Sample recorded = with_changes(level, {{role, good}});
     if (role == Quantity::dew_point) recorded.erase(Quantity::vapor_pressure);
     if (role == Quantity::ambient_temperature) recorded.erase(Quantity::lams_airspeed);
     Model model = c130();
@@ -1550,8 +1542,8 @@ TEST(LoopGarbage, InfinityCountsAsMissingInOtherRoles) {
     Loop infinite = build(model, recorded, 1.0);
     Loop absent = build(model, recorded, 1.0);
     SCOPED_TRACE(pcor::info_of(role).name);
-    run(infinite, with(recorded, {{role, infinity}}), 0.0);
-    run(absent, with(recorded, {{role, missing}}), 0.0);
+    run(infinite, with_changes(recorded, {{role, infinity}}), 0.0);
+    run(absent, with_changes(recorded, {{role, missing}}), 0.0);
     expect_same(infinite, absent);
     EXPECT_NE(infinite.quality().bits(), 0U);
   }
@@ -1593,7 +1585,7 @@ TEST(LoopGarbage, DoesNotAffectTheNextSample) {
           Sample bad = level;
           for (auto& [role, value] : bad) value = garbage(random, value);
           run(loop, bad, ++time / 25.0);
-          for (const Quantity result : results) {
+          for (const Quantity result : all_results) {
             if (!std::isnan(loop.state()[result])) continue;
             ASSERT_NE(loop.quality().bits(), 0U)
                 << pcor::info_of(result).name << " lost without a word:" << text(bad);
@@ -1624,7 +1616,7 @@ TEST(LoopGarbage, ImpossiblePressureDoesNotAffectTheRatesOfItsNeighbours) {
       Loop loop = build(model, cruise, rate);
       constexpr int bad = 300;
       for (int i = 0; i < 600; ++i) {
-        run(loop, i == bad ? with(cruise, {{each.role, each.value}}) : cruise, i / rate);
+        run(loop, i == bad ? with_changes(cruise, {{each.role, each.value}}) : cruise, i / rate);
         if (std::abs(loop.state()[Quantity::time] * rate - bad) < 0.5) continue;
         if (loop.quality().has(Quality::awaiting_later_samples)) continue;
         EXPECT_NEAR(loop.state()[Quantity::port_static_pressure], 700.0, 1e-9) << each.lag << " " << i;
@@ -1646,7 +1638,7 @@ TEST(LoopGarbage, ImplausibleLiquidWaterGivesNoTemperature) {
     Loop loop = build(model, cruise, 1.0);
     run(loop, cruise, 0.0);
     EXPECT_FALSE(std::isnan(loop.state()[Quantity::ambient_temperature]));
-    run(loop, with(cruise, {{Quantity::liquid_water, water}}), 1.0);
+    run(loop, with_changes(cruise, {{Quantity::liquid_water, water}}), 1.0);
     EXPECT_THAT(loop.state()[Quantity::ambient_temperature], IsNan()) << water;
     EXPECT_TRUE(loop.quality().has(Quality::temperature_missing)) << water;
   }
@@ -1661,7 +1653,7 @@ TEST(LoopGarbage, LagLosesOnlyTheBadSample) {
     const auto delay = static_cast<int>(loop.delay());
     for (int i = 0; i < 3 * delay; ++i) {
       const bool is_bad = i == 100;
-      run(loop, is_bad ? with(level, {{Quantity::static_pressure, garbage}}) : level, i / 25.0);
+      run(loop, is_bad ? with_changes(level, {{Quantity::static_pressure, garbage}}) : level, i / 25.0);
       if (i < delay) continue;
       const bool leaves = i == 100 + delay;
       EXPECT_EQ(loop.quality().has(Quality::static_pressure_missing), leaves);

@@ -3,9 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
+
+#include "support/constants.hpp"
 
 namespace {
 
@@ -14,12 +15,12 @@ using pcor::Quality;
 using pcor::QualityFlags;
 using pcor::Quantity;
 using pcor::State;
+using pcor::test::infinity;
+using pcor::test::missing;
+using pcor::test::pi;
 using testing::ElementsAre;
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.14159265358979323846;
-constexpr double rates[] = {1.0, 25.0};
+constexpr double low_pass_rates[] = {1.0, 25.0};
 const Quantity filtered_quantity = pcor::extra_quantity(0);  // a quantity whose values are all valid
 
 struct Result {
@@ -64,7 +65,7 @@ struct Response {
   double in_quadrature;
 };
 
-Response response(double rate, double period) {
+Response low_pass_response(double rate, double period) {
   Filter filter(rate);
   Response sum{0.0, 0.0};
   const auto phase_of = [&](double i) { return 2.0 * pi * i / (rate * period) + 0.7; };
@@ -113,7 +114,7 @@ TEST(LowPass, DeclaresInputsAndOutputs) {
 TEST(LowPass, ResultIsDelayed) {
   EXPECT_EQ(LowPass::delay(1.0), 6U);
   EXPECT_EQ(LowPass::delay(25.0), 150U);
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     Filter filter(rate);
     for (int i = 0; i < 1000; ++i) {
       const Result result = filter(250.0 + 0.01 * i);
@@ -129,7 +130,7 @@ TEST(LowPass, ResultIsDelayed) {
 }
 
 TEST(LowPass, PassesConstantsExactly) {
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     for (const double constant : {271.3, -5.0, 0.0, 1e-3}) {
       std::vector<double> series(700, constant);
       for (const std::size_t gone : {90U, 91U, 200U, 300U, 302U, 420U}) series[gone] = missing;
@@ -149,7 +150,7 @@ TEST(LowPass, PassesConstantsExactly) {
 TEST(LowPass, PassesALineWithMissingSamples) {
   std::mt19937 random(20120106);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     for (const double share : {0.0, 0.02, 0.2}) {
       std::vector<double> series;
       for (int i = 0; i < 2000; ++i) series.push_back(unit(random) < share ? missing : 250.0 + 0.02 * i);
@@ -169,26 +170,26 @@ TEST(LowPass, PassesALineWithMissingSamples) {
 }
 
 TEST(LowPass, PassesPeriodsOfSixSecondsWithoutShift) {
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     for (const double period : {6.0, 7.3, 8.0, 10.1, 12.0, 31.0, 60.0, 300.0}) {
-      const Response left = response(rate, period);
+      const Response left = low_pass_response(rate, period);
       EXPECT_NEAR(left.in_phase, 1.0, 0.006) << rate << " Hz, " << period << " s";
       // A symmetric filter has no delay; the remainder is the rounding of 3000 products.
       EXPECT_NEAR(left.in_quadrature, 0.0, 1e-9) << rate << " Hz, " << period << " s";
     }
-    EXPECT_NEAR(response(rate, 3.0).in_phase, 0.5, 0.005) << "half the amplitude";
+    EXPECT_NEAR(low_pass_response(rate, 3.0).in_phase, 0.5, 0.005) << "half the amplitude";
   }
 }
 
 TEST(LowPass, RemovesPeriodsUnderThreeSeconds) {
   for (const double period : {2.0, 1.7, 1.5, 1.3, 1.0, 0.7, 0.3, 0.1}) {
-    EXPECT_LT(std::abs(response(25.0, period).in_phase), 0.003) << period;
-    EXPECT_NEAR(response(25.0, period).in_quadrature, 0.0, 1e-9) << period;
+    EXPECT_LT(std::abs(low_pass_response(25.0, period).in_phase), 0.003) << period;
+    EXPECT_NEAR(low_pass_response(25.0, period).in_quadrature, 0.0, 1e-9) << period;
   }
   // Near 3 s it is on its way; at 1 Hz 2 s is the shortest period that there is.
-  for (const double rate : rates) {
-    EXPECT_LT(std::abs(response(rate, 2.2).in_phase), 0.013) << rate;
-    EXPECT_LT(std::abs(response(rate, 2.5).in_phase), 0.14) << rate;
+  for (const double rate : low_pass_rates) {
+    EXPECT_LT(std::abs(low_pass_response(rate, 2.2).in_phase), 0.013) << rate;
+    EXPECT_LT(std::abs(low_pass_response(rate, 2.5).in_phase), 0.14) << rate;
   }
   std::vector<double> fastest;
   for (int i = 0; i < 100; ++i) fastest.push_back(i % 2 == 0 ? 1.0 : -1.0);
@@ -196,7 +197,7 @@ TEST(LowPass, RemovesPeriodsUnderThreeSeconds) {
 }
 
 TEST(LowPass, FlagsAnIncompleteWindow) {
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     Filter filter(rate);
     const std::size_t delay = filter.delay();
     for (std::size_t i = 0; i < 3 * delay; ++i) filter(260.0);
@@ -225,7 +226,7 @@ TEST(LowPass, InfinityCountsAsMissing) {
 }
 
 TEST(LowPass, ResetRestartsTheState) {
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     Filter fresh(rate), used(rate);
     for (int i = 0; i < 777; ++i) used(1000.0 * std::sin(i));
     used.reset();
@@ -239,7 +240,7 @@ TEST(LowPass, ResetRestartsTheState) {
 }
 
 TEST(LowPass, FlagsTheInitialDelay) {
-  for (const double rate : rates) {
+  for (const double rate : low_pass_rates) {
     Filter filter(rate);
     for (int begin = 0; begin < 2; ++begin) {
       for (std::size_t i = 0; i < 3 * filter.delay(); ++i) {

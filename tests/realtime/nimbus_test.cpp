@@ -244,7 +244,7 @@ std::uint32_t bits_of(float value) {
   return bits;
 }
 
-void expect_same(float value, double expected) {
+void expect_same_float(float value, double expected) {
   if (std::isnan(expected)) {
     EXPECT_THAT(value, IsNan());
   } else {
@@ -255,21 +255,21 @@ void expect_same(float value, double expected) {
 // `value` gives what the table has of a name.
 template <class Value>
 void expect_fuselage(const Loop& loop, Value value) {
-  expect_same(value("PCOR"), loop.state()[Quantity::static_defect]);
-  expect_same(value("PSXC"), loop.state()[Quantity::corrected_static_pressure]);
-  expect_same(value("QCXC"), loop.state()[Quantity::corrected_dynamic_pressure]);
-  expect_same(value("MACHX"), loop.state()[Quantity::corrected_mach]);
-  expect_same(value("ATX"), loop.state()[Quantity::ambient_temperature] - 273.15);
-  expect_same(value("TASX"), loop.state()[Quantity::corrected_airspeed]);
-  expect_same(value("PCORFLAG"), loop.quality().bits());
+  expect_same_float(value("PCOR"), loop.state()[Quantity::static_defect]);
+  expect_same_float(value("PSXC"), loop.state()[Quantity::corrected_static_pressure]);
+  expect_same_float(value("QCXC"), loop.state()[Quantity::corrected_dynamic_pressure]);
+  expect_same_float(value("MACHX"), loop.state()[Quantity::corrected_mach]);
+  expect_same_float(value("ATX"), loop.state()[Quantity::ambient_temperature] - 273.15);
+  expect_same_float(value("TASX"), loop.state()[Quantity::corrected_airspeed]);
+  expect_same_float(value("PCORFLAG"), loop.quality().bits());
 }
 
 template <class Value>
 void expect_radome(const Loop& loop, Value value) {
-  expect_same(value("PCOR_R"), loop.state()[Quantity::static_defect]);
-  expect_same(value("PSXC_R"), loop.state()[Quantity::corrected_static_pressure]);
-  expect_same(value("TASX_R"), loop.state()[Quantity::corrected_airspeed]);
-  expect_same(value("PCORFLAG_R"), loop.quality().bits());
+  expect_same_float(value("PCOR_R"), loop.state()[Quantity::static_defect]);
+  expect_same_float(value("PSXC_R"), loop.state()[Quantity::corrected_static_pressure]);
+  expect_same_float(value("TASX_R"), loop.state()[Quantity::corrected_airspeed]);
+  expect_same_float(value("PCORFLAG_R"), loop.quality().bits());
 }
 
 // Runs the table through `seconds` and compares every value with plain loops.
@@ -481,8 +481,8 @@ TEST(NimbusSystem, HostWithoutTimeIsTimedBySampleCount) {
                           {"PSXC_R", {"PCOR_R"}, Radome::fetch<Quantity::corrected_static_pressure>}});
   for (const double second : seconds(36000.0, 36012.0)) {
     table.compute(second, raw_value);
-    expect_same(table.low("PSXC"), static_cast<double>(table.low("PSXC_R")));
-    expect_same(table.high("PSXC", 7), static_cast<double>(table.high("PSXC_R", 7)));
+    expect_same_float(table.low("PSXC"), static_cast<double>(table.low("PSXC_R")));
+    expect_same_float(table.high("PSXC", 7), static_cast<double>(table.high("PSXC_R", 7)));
   }
   EXPECT_FALSE(std::isnan(table.low("PSXC"))) << "no gap if time has no steps";
   System::reset();

@@ -8,14 +8,16 @@
 #include <random>
 #include <vector>
 
+#include "support/constants.hpp"
+
 namespace {
 
 using pcor::RateFilter;
+using pcor::test::missing;
+using pcor::test::pi;
 using Complex = std::complex<double>;
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double rates[] = {1.0, 5.0, 25.0, 50.0};
+constexpr double rate_filter_rates[] = {1.0, 5.0, 25.0, 50.0};
 constexpr double delays[] = {0.0, 0.05, 0.3, 1.0, 1.5, -1.7};
 
 /// A function of time at the samples of the widest window, 0 s in question.
@@ -38,7 +40,7 @@ double rate_of(RateFilter& filter, double rate, const Function& function) {
 }
 
 /// Response to exp(i 2 pi t / period) at 0 s.
-Complex response(RateFilter& filter, double rate, double period) {
+Complex frequency_response(RateFilter& filter, double rate, double period) {
   return {rate_of(filter, rate, [&](double t) { return std::cos(2.0 * pi * t / period); }),
           rate_of(filter, rate, [&](double t) { return std::sin(2.0 * pi * t / period); })};
 }
@@ -49,7 +51,7 @@ Complex ideal(double delay, double period) {
 }
 
 TEST(RateFilter, PassesConstantsAndStraightLines) {
-  for (const double rate : rates) {
+  for (const double rate : rate_filter_rates) {
     for (const double delay : delays) {
       RateFilter filter(rate, delay);
       EXPECT_EQ(rate_of(filter, rate, [](double) { return 701.3; }), 0.0);
@@ -60,7 +62,7 @@ TEST(RateFilter, PassesConstantsAndStraightLines) {
 }
 
 TEST(RateFilter, PassesStraightLinesNearTheEnds) {
-  for (const double rate : rates) {
+  for (const double rate : rate_filter_rates) {
     RateFilter filter(rate, 0.3);
     const std::vector<double> line = around(filter, rate, [](double t) { return 3.0 + 2.0 * t; });
     for (std::size_t before = 0; before <= filter.before(); ++before) {
@@ -76,13 +78,14 @@ TEST(RateFilter, PassesStraightLinesNearTheEnds) {
 
 TEST(RateFilter, ResponseIsIdealAboveTheCutOffPeriod) {
   // Half a zero's width of the Hann window from the cut-off: 1 % of ripple.
-  for (const double rate : rates) {
+  for (const double rate : rate_filter_rates) {
     const double shortest = rate == 1.0 ? 3.0 : 1.5;
     for (const double delay : delays) {
       RateFilter filter(rate, delay);
       for (double period = shortest; period < 40.0; period *= 1.3) {
         const Complex requested = ideal(delay, period);
-        EXPECT_LT(std::abs(response(filter, rate, period) - requested), 0.015 * std::abs(ideal(0.0, period)))
+        EXPECT_LT(std::abs(frequency_response(filter, rate, period) - requested),
+                  0.015 * std::abs(ideal(0.0, period)))
             << rate << " Hz, delay " << delay << " s, period " << period << " s";
       }
     }
@@ -92,10 +95,10 @@ TEST(RateFilter, ResponseIsIdealAboveTheCutOffPeriod) {
 TEST(RateFilter, RemovesShortPeriods) {
   for (const double rate : {5.0, 25.0, 50.0}) {
     RateFilter filter(rate);
-    const double half = std::abs(response(filter, rate, 1.0)) / std::abs(ideal(0.0, 1.0));
+    const double half = std::abs(frequency_response(filter, rate, 1.0)) / std::abs(ideal(0.0, 1.0));
     EXPECT_NEAR(half, 0.5, 0.01);
     for (const double period : {0.7, 0.5})
-      EXPECT_LT(std::abs(response(filter, rate, period)), 0.01 * std::abs(ideal(0.0, period)));
+      EXPECT_LT(std::abs(frequency_response(filter, rate, period)), 0.01 * std::abs(ideal(0.0, period)));
   }
 }
 
@@ -160,7 +163,7 @@ TEST(RateFilter, ReducesNoise) {
 }
 
 TEST(RateFilter, InterpolatesShortGaps) {
-  for (const double rate : rates) {
+  for (const double rate : rate_filter_rates) {
     RateFilter filter(rate);
     std::vector<double> line = around(filter, rate, [](double t) { return 5.0 - t; });
     line.front() = missing;
@@ -197,7 +200,7 @@ TEST(RateFilter, IgnoresSamplesBeyondALongGap) {
 TEST(RateFilter, HalfSampleDelayIsAccurate) {
   RateFilter filter(1.0, 0.5);
   for (const double period : {10.0, 20.0, 40.0})
-    EXPECT_LT(std::abs(response(filter, 1.0, period) - ideal(0.5, period)),
+    EXPECT_LT(std::abs(frequency_response(filter, 1.0, period) - ideal(0.5, period)),
               0.006 * std::abs(ideal(0.5, period)))
         << period;
 }
@@ -215,9 +218,9 @@ TEST(RateFilter, GivesNanInAGapWithinTheDelay) {
 
 TEST(RateFilter, CutOffHasTheRequestedPeriod) {
   RateFilter filter(1.0, 0.0, 10.0);
-  EXPECT_NEAR(std::abs(response(filter, 1.0, 10.0)) / std::abs(ideal(0.0, 10.0)), 0.5, 0.02);
-  EXPECT_NEAR(std::abs(response(filter, 1.0, 20.0)) / std::abs(ideal(0.0, 20.0)), 1.0, 0.01);
-  EXPECT_LT(std::abs(response(filter, 1.0, 5.0)), 0.01 * std::abs(ideal(0.0, 5.0)));
+  EXPECT_NEAR(std::abs(frequency_response(filter, 1.0, 10.0)) / std::abs(ideal(0.0, 10.0)), 0.5, 0.02);
+  EXPECT_NEAR(std::abs(frequency_response(filter, 1.0, 20.0)) / std::abs(ideal(0.0, 20.0)), 1.0, 0.01);
+  EXPECT_LT(std::abs(frequency_response(filter, 1.0, 5.0)), 0.01 * std::abs(ideal(0.0, 5.0)));
 }
 
 }  // namespace

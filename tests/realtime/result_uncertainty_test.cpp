@@ -14,16 +14,18 @@
 #include <vector>
 
 #include <pcor/realtime/loop.hpp>
+#include "realtime/sample.hpp"
+#include "support/constants.hpp"
 #include "support/test_name.hpp"
 
 namespace pcor {
 namespace {
 
+using test::missing;
+using test::roles_of;
 using testing::HasSubstr;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-using Recorded = std::map<Quantity, double>;
+using Recorded = test::Sample;
 
 // A climbing, slipping aircraft near the ground in moist air, so that every effect is felt.
 Recorded everything_recorded() {
@@ -61,22 +63,17 @@ Recorded everything_recorded() {
           {Quantity::airspeed_rate, 0.4}};
 }
 
-Recorded without(Recorded recorded, std::initializer_list<Quantity> excluded) {
+Recorded without_roles(Recorded recorded, std::initializer_list<Quantity> excluded) {
   for (const Quantity quantity : excluded) recorded.erase(quantity);
   return recorded;
 }
 
-std::vector<Quantity> roles(const Recorded& recorded) {
-  std::vector<Quantity> result;
-  for (const auto& [quantity, value] : recorded) result.push_back(quantity);
-  return result;
-}
-
 /// The state after one sample at 1800 s, and the uncertainties where some are stated.
-State<double> fly(const Model& model, const Recorded& recorded, const ModelUncertainty& uncertainty = {}) {
+State<double> state_of(const Model& model, const Recorded& recorded,
+                       const ModelUncertainty& uncertainty = {}) {
   std::string error;
   std::optional<Loop> loop =
-      Loop::build(model, roles(recorded), 1.0, &error, CorrectWith::model, uncertainty);
+      Loop::build(model, roles_of(recorded), 1.0, &error, CorrectWith::model, uncertainty);
   if (!loop) throw std::runtime_error(error);
   for (const auto& [quantity, value] : recorded) loop->state()[quantity] = value;
   loop->run(1800.0);
@@ -120,11 +117,11 @@ ModelUncertainty of_parameter(const Model& model, std::size_t position, double s
 template <class Draw>
 std::array<double, uncertain_results.size()> scatter(const Model& model, const Recorded& recorded,
                                                      Draw draw) {
-  const std::optional<Chain> chain = Chain::build(model, roles(recorded), nullptr);
+  const std::optional<Chain> chain = Chain::build(model, roles_of(recorded), nullptr);
   State<double> inputs;
   for (const auto& [quantity, value] : recorded) inputs[quantity] = value;
   inputs[Quantity::time] = 1800.0;
-  inputs[Quantity::wetness] = fly(model, recorded)[Quantity::wetness];
+  inputs[Quantity::wetness] = state_of(model, recorded)[Quantity::wetness];
   std::mt19937_64 engine(1);
   constexpr int count = 4000;
   std::array<double, uncertain_results.size()> first{}, sum{}, squares{};
@@ -167,7 +164,7 @@ TEST_P(EffectUncertainty, EqualsTheScatterOfDrawnCoefficients) {
   const EffectInfo& info = GetParam();
   const Recorded all = everything_recorded();
   for (const Recorded& recorded :
-       {all, without(all, {Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed})}) {
+       {all, without_roles(all, {Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed})}) {
     Model model = law();
     for (const ModelEffect& effect : model.effects) {
       if (effect.id == info.id) model.effects = {};
@@ -186,7 +183,7 @@ TEST_P(EffectUncertainty, EqualsTheScatterOfDrawnCoefficients) {
       for (std::size_t j = 0; j < count; ++j)
         uncertainty.covariance.push_back((i == j ? 1.0 : 0.5) * sizes[i] * sizes[j]);
     }
-    expect_scatter(fly(model, recorded, uncertainty),
+    expect_scatter(state_of(model, recorded, uncertainty),
                    scatter(model, recorded,
                            [&](std::mt19937_64& engine, State<double>&, std::vector<double>& parameters) {
                              const double common = normal(engine);
@@ -205,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EffectUncertainty, testing::ValuesIn(effect_
 TEST(ResultUncertainty, GainOfTheAttackRatioActsOnTheRecordedRatio) {
   Model model;
   model.effects = {{"static-alpha", {0.021}}, {"adif-drift", {0.3, 0.0, 0.0}}};
-  const State<double> s = fly(model, everything_recorded(), of_parameter(model, 1, 0.03));
+  const State<double> s = state_of(model, everything_recorded(), of_parameter(model, 1, 0.03));
   // d(delta-p) = -p a1 r d(gain), r = -18/79 as recorded; linear.
   EXPECT_NEAR(s[Quantity::static_defect_uncertainty], 700.0 * 0.021 * 18.0 / 79.0 * 0.03, 1e-12);
 }
@@ -214,11 +211,11 @@ TEST(ResultUncertainty, GainOfTheAttackRatioActsOnTheRecordedRatio) {
 TEST(ResultUncertainty, CalibrationActsOnTheRecordedTemperature) {
   Model model;
   model.effects = {{"temp-calibration", {5.0, 0.0, 0.0}}};
-  const State<double> s = fly(model,
-                              {{Quantity::static_pressure, 700.0},
-                               {Quantity::dynamic_pressure, 80.0},
-                               {Quantity::ambient_temperature, 270.0}},
-                              of_parameter(model, 2, 1e-4));
+  const State<double> s = state_of(model,
+                                   {{Quantity::static_pressure, 700.0},
+                                    {Quantity::dynamic_pressure, 80.0},
+                                    {Quantity::ambient_temperature, 270.0}},
+                                   of_parameter(model, 2, 1e-4));
   // dT/da2 = t^2; linear.
   EXPECT_NEAR(s[Quantity::ambient_temperature_uncertainty], 1e-4 * 3.15 * 3.15, 1e-12);
 }
@@ -234,11 +231,11 @@ TEST(ResultUncertainty, RoleUncertaintyEqualsTheScatterOfDrawnValues) {
                                                              {Quantity::recovery_temperature, 0.1},
                                                              {Quantity::vapor_pressure, 0.2}}) {
     const Recorded recorded =
-        without(everything_recorded(), {Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed});
+        without_roles(everything_recorded(), {Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed});
     ModelUncertainty uncertainty;
     uncertainty.random[index(role)] = size;
     expect_scatter(
-        fly(model, recorded, uncertainty),
+        state_of(model, recorded, uncertainty),
         scatter(model, recorded,
                 [role = role, size = size](std::mt19937_64& engine, State<double>& state,
                                            std::vector<double>&) { state[role] += size * normal(engine); }),
@@ -268,7 +265,7 @@ TEST(ResultUncertainty, RoleUncertaintyEqualsTheClosedForm) {
     constexpr double size = 0.01;
     ModelUncertainty uncertainty;
     uncertainty.random[index(each.role)] = size;
-    const State<double> s = fly(model, recorded, uncertainty);
+    const State<double> s = state_of(model, recorded, uncertainty);
     const double dh = 2.0 / 7.0 * (1.0 + h) * (each.dq - q / p * each.dp) / (p + q);
     const double temperature = s[Quantity::ambient_temperature];
     const double dt = (each.of_thermometer - temperature * 0.95 * dh) / (1.0 + 0.95 * h);
@@ -299,11 +296,11 @@ TEST(ResultUncertainty, AirspeedUncertaintyAgreesWithPublishedSensitivities) {
     ModelUncertainty uncertainty;
     uncertainty.static_defect = 0.1;
     const double sound = row.v / row.mach;
-    const State<double> s = fly(model,
-                                {{Quantity::static_pressure, row.p},
-                                 {Quantity::dynamic_pressure, row.q},
-                                 {Quantity::ambient_temperature, sound * sound / (1.4 * 287.05)}},
-                                uncertainty);
+    const State<double> s = state_of(model,
+                                     {{Quantity::static_pressure, row.p},
+                                      {Quantity::dynamic_pressure, row.q},
+                                      {Quantity::ambient_temperature, sound * sound / (1.4 * 287.05)}},
+                                     uncertainty);
     // Two to three digits of the table: 1 %.
     EXPECT_NEAR(0.1 / s[Quantity::corrected_airspeed_uncertainty], row.by_airspeed, 0.01 * row.by_airspeed)
         << row.p << " hPa, " << row.v << " m/s";
@@ -313,14 +310,14 @@ TEST(ResultUncertainty, AirspeedUncertaintyAgreesWithPublishedSensitivities) {
 // d ln e/dT = 17.62 * 243.12/(243.12 + t)^2 (Magnus). The ratio e/p changes h = M^2/5 and c_p.
 TEST(ResultUncertainty, DewPointAndAmbientTemperatureUncertaintiesPropagate) {
   Recorded recorded =
-      without(everything_recorded(), {Quantity::vapor_pressure, Quantity::recovery_temperature,
-                                      Quantity::recovery_temperature_rate, Quantity::lams_airspeed});
+      without_roles(everything_recorded(), {Quantity::vapor_pressure, Quantity::recovery_temperature,
+                                            Quantity::recovery_temperature_rate, Quantity::lams_airspeed});
   recorded[Quantity::ambient_temperature] = 270.0;
   recorded[Quantity::dew_point] = 264.0;
   for (const Quantity role : {Quantity::ambient_temperature, Quantity::dew_point}) {
     ModelUncertainty uncertainty;
     uncertainty.random[index(role)] = 1.0;
-    const State<double> s = fly(law(), recorded, uncertainty);
+    const State<double> s = state_of(law(), recorded, uncertainty);
     const double v = s[Quantity::corrected_airspeed];
     const double h = 0.2 * s[Quantity::corrected_mach] * s[Quantity::corrected_mach];
     // d ln h = -(1 + h/2)/7 d(e/p), d ln c_p = 0.52 d(e/p).
@@ -336,7 +333,7 @@ TEST(ResultUncertainty, DewPointAndAmbientTemperatureUncertaintiesPropagate) {
 
 // A formula of the pitch, at locations from which its noise reaches the results by other quantities.
 TEST(ResultUncertainty, NoiseReachesResultsThroughEveryLocation) {
-  const Recorded recorded = without(everything_recorded(), {Quantity::lams_airspeed});
+  const Recorded recorded = without_roles(everything_recorded(), {Quantity::lams_airspeed});
   struct Case {
     EffectLocation location;
     double slope;  // change of delta-p by one unit of the effect
@@ -358,21 +355,21 @@ TEST(ResultUncertainty, NoiseReachesResultsThroughEveryLocation) {
     ModelUncertainty uncertainty;
     uncertainty.random[index(Quantity::pitch)] = 2.0;
     // Linear except for the radome: (0.002/79)^2.
-    EXPECT_NEAR(fly(model, recorded, uncertainty)[Quantity::static_defect_uncertainty], 2e-3 * each.slope,
-                1e-9 * each.slope);
+    EXPECT_NEAR(state_of(model, recorded, uncertainty)[Quantity::static_defect_uncertainty],
+                2e-3 * each.slope, 1e-9 * each.slope);
   }
 }
 
 // Below zero the air counts as dry, so that an error counts on one side only.
 TEST(ResultUncertainty, LimitOfHumidityHalvesTheUncertainty) {
-  Recorded recorded = without(everything_recorded(), {Quantity::lams_airspeed});
+  Recorded recorded = without_roles(everything_recorded(), {Quantity::lams_airspeed});
   ModelUncertainty uncertainty;
   uncertainty.random[index(Quantity::vapor_pressure)] = 0.2;
   Model model;
   model.recovery = {{0.97}};
   const auto of_airspeed = [&](double vapor) {
     recorded[Quantity::vapor_pressure] = vapor;
-    return fly(model, recorded, uncertainty)[Quantity::corrected_airspeed_uncertainty];
+    return state_of(model, recorded, uncertainty)[Quantity::corrected_airspeed_uncertainty];
   };
   const double inside = of_airspeed(1.0);
   EXPECT_GT(inside, 0.0);
@@ -384,7 +381,7 @@ TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   model.policy.taper_below = 100.0;
   const Recorded recorded = everything_recorded();
   const auto of_constant = [&recorded](const Model& of) {
-    return fly(of, recorded, of_parameter(of, 0, 1e-4))[Quantity::static_defect_uncertainty];
+    return state_of(of, recorded, of_parameter(of, 0, 1e-4))[Quantity::static_defect_uncertainty];
   };
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0 * 0.8 * 0.8 * 0.8, 1e-12);
   model.policy = {};
@@ -398,9 +395,9 @@ TEST(ResultUncertainty, IsMissingOutsideTheDomainOfTheLaw) {
   const Recorded recorded = everything_recorded();
   const ModelUncertainty uncertainty = of_parameter(model, 0, 1e-4);
   model.domain = {{"dynamic_pressure", 20.0, 79.0}};
-  const State<double> outside = fly(model, recorded, uncertainty);
+  const State<double> outside = state_of(model, recorded, uncertainty);
   model.domain = {{"dynamic_pressure", 20.0, 81.0}};
-  const State<double> inside = fly(model, recorded, uncertainty);
+  const State<double> inside = state_of(model, recorded, uncertainty);
   for (const UncertainResult& each : uncertain_results) {
     EXPECT_EQ(outside[each.result], inside[each.result]) << info_of(each.result).name;
     EXPECT_TRUE(std::isnan(outside[each.uncertainty])) << info_of(each.result).name;
@@ -410,7 +407,7 @@ TEST(ResultUncertainty, IsMissingOutsideTheDomainOfTheLaw) {
 
 // Attack noise of 0.3 hPa at a radome pressure of 0.001 hPa exceeds all possible angles in both directions.
 TEST(ResultUncertainty, IsMissingWithABitWhereTheNoiseOfAnInputExceedsItsRange) {
-  Recorded recorded = without(everything_recorded(), {Quantity::attack, Quantity::sideslip});
+  Recorded recorded = without_roles(everything_recorded(), {Quantity::attack, Quantity::sideslip});
   recorded[Quantity::radome_dynamic_pressure] = 1e-3;
   recorded[Quantity::attack_differential_pressure] = 0.0;
   recorded[Quantity::sideslip_differential_pressure] = 0.0;
@@ -418,7 +415,7 @@ TEST(ResultUncertainty, IsMissingWithABitWhereTheNoiseOfAnInputExceedsItsRange) 
   for (const double noise : {1e-6, 0.3}) {
     uncertainty.random[index(Quantity::attack_differential_pressure)] = noise;
     std::optional<Loop> loop =
-        Loop::build(law(), roles(recorded), 1.0, nullptr, CorrectWith::model, uncertainty);
+        Loop::build(law(), roles_of(recorded), 1.0, nullptr, CorrectWith::model, uncertainty);
     ASSERT_TRUE(loop);
     for (const auto& [quantity, value] : recorded) loop->state()[quantity] = value;
     loop->run(1800.0);
@@ -436,7 +433,7 @@ TEST(ResultUncertainty, TaperDependsOnTheDynamicPressure) {
   const Recorded recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 70.0}};
   ModelUncertainty uncertainty;
   uncertainty.random[index(Quantity::dynamic_pressure)] = 0.5;
-  const State<double> s = fly(model, recorded, uncertainty);
+  const State<double> s = state_of(model, recorded, uncertainty);
   // d(14 (q/100)^3)/dq = 0.2058 at 70 hPa; the difference over 0.5 hPa is accurate to (0.5/70)^2/3.
   EXPECT_NEAR(s[Quantity::static_defect_uncertainty], 0.5 * 0.2058, 1e-5);
   EXPECT_NEAR(s[Quantity::corrected_dynamic_pressure_uncertainty], 0.5 * (1.0 - 0.2058), 1e-5);
@@ -448,7 +445,8 @@ TEST(ResultUncertainty, VapourIsIrrelevantToAModelOfDryAir) {
   model.moist = false;
   ModelUncertainty uncertainty;
   uncertainty.random[index(Quantity::vapor_pressure)] = 2.0;
-  const State<double> s = fly(model, without(everything_recorded(), {Quantity::lams_airspeed}), uncertainty);
+  const State<double> s =
+      state_of(model, without_roles(everything_recorded(), {Quantity::lams_airspeed}), uncertainty);
   EXPECT_EQ(s[Quantity::corrected_airspeed_uncertainty], 0.0);
   EXPECT_EQ(s[Quantity::ambient_temperature_uncertainty], 0.0);
 }
@@ -478,7 +476,7 @@ TEST(ResultUncertainty, LagAmplifiesTheNoiseOfItsSensor) {
     ModelUncertainty uncertainty;
     uncertainty.random[index(each.role)] = 0.1;
     std::string error;
-    auto loop = Loop::build(model, roles(level), 1.0, &error, CorrectWith::model, uncertainty);
+    auto loop = Loop::build(model, roles_of(level), 1.0, &error, CorrectWith::model, uncertainty);
     ASSERT_TRUE(loop) << error;
     loop->do_not_watch_sensors();  // the other roles are constant
     std::mt19937_64 engine(1);
@@ -508,7 +506,7 @@ TEST(ResultUncertainty, TemperatureUncertaintyOnRampIsThatOfTheThermometer) {
   recorded[Quantity::dynamic_pressure] = 0.5;
   ModelUncertainty uncertainty;
   uncertainty.random[index(Quantity::recovery_temperature)] = 0.1;
-  const State<double> s = fly(model, recorded, uncertainty);
+  const State<double> s = state_of(model, recorded, uncertainty);
   EXPECT_NEAR(s[Quantity::ambient_temperature_uncertainty], 0.1, 1e-4);
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed_uncertainty]));
 }
@@ -522,7 +520,7 @@ TEST(ResultUncertainty, IncludesCorrelations) {
     ModelUncertainty uncertainty;
     const double a = 1e-4, b = 0.05;
     uncertainty.covariance = {a * a, correlation * a * b, correlation * a * b, b * b};
-    const State<double> s = fly(model, recorded, uncertainty);
+    const State<double> s = state_of(model, recorded, uncertainty);
     const double of_law = 1e-4 * 700.0;
     EXPECT_NEAR(s[Quantity::static_defect_uncertainty], of_law, 1e-9);
     EXPECT_NEAR(s[Quantity::corrected_dynamic_pressure_uncertainty], of_law, 1e-9);
@@ -539,16 +537,16 @@ TEST(ResultUncertainty, NearlyCancellingErrorsKeepTheirRest) {
   constexpr double a = 0.02, b = 14.0, left = 1e-8;
   ModelUncertainty uncertainty;
   uncertainty.covariance = {a * a, (1.0 - left) * a * b, (1.0 - left) * a * b, b * b};
-  const State<double> s = fly(model, everything_recorded(), uncertainty);
+  const State<double> s = state_of(model, everything_recorded(), uncertainty);
   // Rounding of the covariance: 1e-16 of a variance against 2e-8.
   EXPECT_NEAR(s[Quantity::corrected_static_pressure_uncertainty], b * std::sqrt(2.0 * left), 1e-7 * b);
 }
 
 TEST(ResultUncertainty, ImpossibleUncertaintyIsRefused) {
-  for (const double number : {nan, std::numeric_limits<double>::infinity(), -0.3}) {
+  for (const double number : {missing, std::numeric_limits<double>::infinity(), -0.3}) {
     const auto error_of = [](const ModelUncertainty& uncertainty) {
       std::string error;
-      Loop::build(law(), roles(everything_recorded()), 1.0, &error, CorrectWith::model, uncertainty);
+      Loop::build(law(), roles_of(everything_recorded()), 1.0, &error, CorrectWith::model, uncertainty);
       return error;
     };
     const auto refused = HasSubstr("negative or not finite; give zero or a positive number");
@@ -574,9 +572,9 @@ TEST(ResultUncertainty, CovarianceRootScalesUncertainty) {
   twice.static_defect = 0.4;
   ModelUncertainty other_role;  // role without influence on delta-p or pressures
   other_role.random[index(Quantity::recovery_temperature)] = 0.1;
-  const State<double> a = fly(model, everything_recorded(), once);
-  const State<double> b = fly(model, everything_recorded(), twice);
-  const State<double> c = fly(model, everything_recorded(), other_role);
+  const State<double> a = state_of(model, everything_recorded(), once);
+  const State<double> b = state_of(model, everything_recorded(), twice);
+  const State<double> c = state_of(model, everything_recorded(), other_role);
   for (const UncertainResult& each : uncertain_results)
     EXPECT_NEAR(b[each.uncertainty] / a[each.uncertainty], 2.0, 1e-4);
   EXPECT_EQ(c[Quantity::static_defect_uncertainty], 0.0);
@@ -588,9 +586,9 @@ TEST(ResultUncertainty, RandomAndSystematicPartsGiveTheTotal) {
   ModelUncertainty whole = of_parameter(model, 1, 0.001);
   whole.random[index(Quantity::recovery_temperature)] = 0.2;
   whole.static_defect_ratio = 0.00045;
-  const State<double> all = fly(model, everything_recorded(), whole);
-  const State<double> systematic = fly(model, everything_recorded(), whole.systematic_part());
-  const State<double> random = fly(model, everything_recorded(), whole.random_part());
+  const State<double> all = state_of(model, everything_recorded(), whole);
+  const State<double> systematic = state_of(model, everything_recorded(), whole.systematic_part());
+  const State<double> random = state_of(model, everything_recorded(), whole.random_part());
   for (const UncertainResult& each : uncertain_results) {
     EXPECT_NEAR(all[each.uncertainty], std::hypot(systematic[each.uncertainty], random[each.uncertainty]),
                 1e-9);
@@ -607,11 +605,11 @@ class InALoop : public testing::Test {
     ModelUncertainty uncertainty = of_parameter(model, uncertain, 1e-4);
     uncertainty.random[index(Quantity::recovery_temperature)] = 0.1;
     std::string error;
-    loop_ = Loop::build(model, roles(recorded_), 25.0, &error, with, uncertainty);
+    loop_ = Loop::build(model, roles_of(recorded_), 25.0, &error, with, uncertainty);
     ASSERT_TRUE(loop_) << error;
   }
 
-  const State<double>& run(Quantity changed = Quantity::count, double to = nan) {
+  const State<double>& run(Quantity changed = Quantity::count, double to = missing) {
     for (const auto& [quantity, value] : recorded_) loop_->state()[quantity] = value;
     if (changed != Quantity::count) loop_->state()[changed] = to;
     loop_->run(time_ += 0.04);
@@ -626,12 +624,12 @@ class InALoop : public testing::Test {
 TEST_F(InALoop, IsMissingExactlyWhereItsResultIsMissing) {
   build(CorrectWith::model);
   for (int second = 0; second < 3; ++second) {
-    for (const auto& [quantity, to] : {std::pair{Quantity::static_pressure, nan},
-                                       {Quantity::dynamic_pressure, nan},
+    for (const auto& [quantity, to] : {std::pair{Quantity::static_pressure, missing},
+                                       {Quantity::dynamic_pressure, missing},
                                        {Quantity::dynamic_pressure, 0.3},
-                                       {Quantity::recovery_temperature, nan},
-                                       {Quantity::attack_differential_pressure, nan},
-                                       {Quantity::attack, nan}}) {
+                                       {Quantity::recovery_temperature, missing},
+                                       {Quantity::attack_differential_pressure, missing},
+                                       {Quantity::attack, missing}}) {
       for (const UncertainResult& each : uncertain_results) {
         run(quantity, to);
         EXPECT_EQ(std::isnan(loop_->state()[each.uncertainty]), std::isnan(loop_->state()[each.result]))
@@ -688,9 +686,9 @@ TEST(Covariance, InvalidMatrixIsRefused) {
   EXPECT_TRUE(is_covariance({}, 0));
   EXPECT_TRUE(is_covariance({0.0}, 1));
   EXPECT_FALSE(is_covariance({-1.0}, 1));
-  EXPECT_FALSE(is_covariance({nan}, 1));
+  EXPECT_FALSE(is_covariance({missing}, 1));
   EXPECT_FALSE(is_covariance({std::numeric_limits<double>::infinity()}, 1));
-  EXPECT_FALSE(is_covariance({1.0, nan, nan, 1.0}, 2));
+  EXPECT_FALSE(is_covariance({1.0, missing, missing, 1.0}, 2));
   EXPECT_FALSE(is_covariance({1.0, 0.9, -0.9, 1.0}, 2)) << "not symmetric";
   EXPECT_FALSE(is_covariance({0.0, 1e-3, 1e-3, 1.0}, 2)) << "what is known exactly varies with nothing";
   // Three variables, each pair with correlation c, exist for c >= -1/2 only; each pair alone always does.

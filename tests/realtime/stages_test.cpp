@@ -9,7 +9,7 @@
 namespace pcor {
 namespace {
 
-double sample_of(Quantity quantity) {
+double sample_value(Quantity quantity) {
   switch (quantity) {
     case Quantity::static_pressure:
       return 700.0;
@@ -61,7 +61,7 @@ bool is_in(const Quantities& quantities, std::size_t position) {
 void expect_true_words(const Correction& correction) {
   State<double> before;
   for (const Quantity input : correction.chain.inputs()) {
-    before[input] = index(input) < quantity_count ? sample_of(input) : 0.5;
+    before[input] = index(input) < quantity_count ? sample_value(input) : 0.5;
   }
   for (const Rate& each : rates) before[each.rate] = 0.01;
   before[Quantity::airspeed_rate] = 0.4;
@@ -141,7 +141,7 @@ TEST(Stages, DerivedQuantitiesDependOnDeclaredSourcesOnly) {
   const std::optional<Chain> chain = chain_of_radome(std::move(model));
   ASSERT_TRUE(chain);
   State<double> state;
-  for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
+  for (const Quantity input : chain->inputs()) state[input] = sample_value(input);
   for (const Rate& each : rates) state[each.rate] = 0.01;
   NoQualityFlags none;
   for (const Quantity derived :
@@ -168,7 +168,7 @@ TEST(Stages, RateOfTheAirspeedDependsOnDeclaredSourcesOnly) {
   const std::optional<Chain> chain = chain_of_radome(std::move(model));
   ASSERT_TRUE(chain);
   State<double> state;
-  for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
+  for (const Quantity input : chain->inputs()) state[input] = sample_value(input);
   const auto airspeed = [&](const State<double>& of) {
     return chain->airspeed_along_beam(of, chain->parameters().data());
   };

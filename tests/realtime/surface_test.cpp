@@ -9,11 +9,12 @@
 #include <vector>
 
 #include <pcor/realtime/loop.hpp>
+#include "support/constants.hpp"
 
 namespace pcor {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::missing;
 
 const Surface surface_5_by_4{{{{Quantity::attack_ratio, -0.1, 0.3, 5}, {Quantity::mach, 0.2, 0.5, 4}}}};
 
@@ -40,13 +41,14 @@ Model model_with(const std::vector<double>& coefficients) {
   return model;
 }
 
-const std::vector<Quantity> roles{Quantity::static_pressure, Quantity::dynamic_pressure,
-                                  Quantity::radome_dynamic_pressure, Quantity::attack_differential_pressure};
+const std::vector<Quantity> surface_roles{Quantity::static_pressure, Quantity::dynamic_pressure,
+                                          Quantity::radome_dynamic_pressure,
+                                          Quantity::attack_differential_pressure};
 
 /// A loop after one sample of that attack ratio at 700 hPa.
 Loop flown(const Model& model, double ratio, double q, const ModelUncertainty& uncertainty = {}) {
   std::string error;
-  std::optional<Loop> loop = Loop::build(model, roles, 1.0, &error, CorrectWith::model, uncertainty);
+  std::optional<Loop> loop = Loop::build(model, surface_roles, 1.0, &error, CorrectWith::model, uncertainty);
   if (!loop) throw std::runtime_error(error);
   State<double>& state = loop->state();
   state[Quantity::static_pressure] = 700.0;
@@ -65,8 +67,6 @@ ModelUncertainty independent(const Model& model, double error) {
   for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = error * error;
   return uncertainty;
 }
-
-}  // namespace
 
 // Sums of at most twenty products of numbers of order one: within 1e-14.
 TEST(Surface, SplinesSumToOneEverywhere) {
@@ -110,8 +110,8 @@ TEST(Surface, IsFlatOutsideItsEnvelope) {
 
 TEST(Surface, MissingInputsGiveNan) {
   const std::vector<double> coefficients = uneven();
-  EXPECT_TRUE(std::isnan(value(coefficients, nan, 0.3)));
-  EXPECT_TRUE(std::isnan(value(coefficients, 0.1, nan)));
+  EXPECT_TRUE(std::isnan(value(coefficients, missing, 0.3)));
+  EXPECT_TRUE(std::isnan(value(coefficients, 0.1, missing)));
 }
 
 TEST(Surface, LoopAddsItToDeltaP) {
@@ -154,7 +154,7 @@ TEST(Surface, StatedErrorGrowsWithTheDistanceOutside) {
 TEST(Surface, ErrorGrowsOutsideTheEnvelope) {
   const Model model = model_with(uneven());
   std::string error;
-  auto loop = Loop::build(model, roles, 1.0, &error, CorrectWith::model, independent(model, 0.0005));
+  auto loop = Loop::build(model, surface_roles, 1.0, &error, CorrectWith::model, independent(model, 0.0005));
   ASSERT_TRUE(loop) << error;
   std::vector<double> errors;
   for (int i = 0; i < 3; ++i) {
@@ -174,8 +174,9 @@ TEST(Surface, WrongNumberOfCoefficientsIsRefused) {
   Model model = model_with(uneven());
   model.effects.back().parameters.pop_back();
   BindingError error;
-  EXPECT_FALSE(Chain::build(model, roles, &error));
+  EXPECT_FALSE(Chain::build(model, surface_roles, &error));
   EXPECT_EQ(error.code, BindingError::Code::parameter_count);
 }
 
+}  // namespace
 }  // namespace pcor

@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
+
+#include "support/constants.hpp"
 
 namespace {
 
 using pcor::Wetness;
+using pcor::test::missing;
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double cloud = 0.3;  // g/m3
 
 // Outside, in cloud from 10 to 30 s, outside to 90 s; means over whole seconds.
