@@ -8,11 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <random>
 #include <sstream>
 #include <tuple>
 
+#include "support/constants.hpp"
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -25,7 +25,10 @@ using pcor::TimestampAlignment;
 using pcor::UnitConversion;
 using pcor::utc_text;
 using pcor::test::error_of;
+using pcor::test::infinity;
 using pcor::test::IsError;
+using pcor::test::midnight;
+using pcor::test::missing;
 using pcor::test::NetcdfMaker;
 using pcor::test::sequence;
 using pcor::test::values_of;
@@ -35,10 +38,6 @@ using testing::HasSubstr;
 using testing::IsNan;
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double midnight = 1077062400;  // 2004-02-18 00:00:00 UTC
 
 class FlightTest : public testing::Test {
  protected:
@@ -88,8 +87,6 @@ class FlightTest : public testing::Test {
 
   pcor::test::TemporaryDirectory directory;
 };
-
-}  // namespace
 
 // Files that cannot be read
 
@@ -1112,3 +1109,5 @@ TEST(RealFlight, FlightOfJuly2004IsRead) {
   EXPECT_GT(samples, 2000);
   EXPECT_LT(std::sqrt(squares / samples), 0.12);
 }
+
+}  // namespace

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "flight/netcdf_file.hpp"
+#include "support/constants.hpp"
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -27,6 +28,8 @@ using pcor::RecordBlock;
 using pcor::test::error_of;
 using pcor::test::IsError;
 using pcor::test::make_flight;
+using pcor::test::midnight;
+using pcor::test::missing;
 using pcor::test::NetcdfMaker;
 using pcor::test::sequence;
 using testing::ElementsAre;
@@ -35,9 +38,6 @@ using testing::NanSensitiveDoubleEq;
 using testing::Pointwise;
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double midnight = 1077062400;  // 2004-02-18 00:00:00 UTC
 
 OutputVariable pressure(const std::string& name = "PSXC", int rate = 1) {
   OutputVariable variable;
@@ -157,8 +157,6 @@ class FlightWriterTest : public testing::Test {
   const std::filesystem::path input = directory / "in.nc";
   const std::filesystem::path output = directory / "out.nc";
 };
-
-}  // namespace
 
 // Written content
 
@@ -676,3 +674,5 @@ TEST_F(FlightWriterTest, ReferenceFlightIsCopiedCompletely) {
   EXPECT_EQ(Flight(output).time().last, flight.time().last);
   EXPECT_EQ(kind_of(output), NetcdfFormat::classic);
 }
+
+}  // namespace

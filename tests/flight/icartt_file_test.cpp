@@ -44,10 +44,10 @@ class Icartt : public testing::Test {
   std::filesystem::path path_ = folder_.path() / "flight.ict";
 };
 
-const std::string values = "47076, 850, 300, 0.3\n47077,-9999,-8888, 0.31\r\n47078, 852.5, 310, -7777\n";
+const std::string value_lines = "47076, 850, 300, 0.3\n47077,-9999,-8888, 0.31\r\n47078, 852.5, 310, -7777\n";
 
 TEST_F(Icartt, IsReadAsAFlight) {
-  const Flight flight(write(head + values));
+  const Flight flight(write(head + value_lines));
   EXPECT_EQ(flight.records(), 3U);
   EXPECT_EQ(flight.time().first, 1541289600.0 + 47076.0) << "the midnight of 2018-11-04";
   EXPECT_EQ(flight.aircraft(), "N701BN");
@@ -62,7 +62,7 @@ TEST_F(Icartt, IsReadAsAFlight) {
 
 TEST_F(Icartt, IsCopiedToNetcdf) {
   const std::filesystem::path output = folder_.path() / "out.nc";
-  const Flight flight(write(head + values));
+  const Flight flight(write(head + value_lines));
   FlightWriter writer(output, flight, {});
   writer.copy("static_pressure");
   writer.finish();
@@ -77,14 +77,14 @@ TEST_F(Icartt, ErrorNamesTheLine) {
     write(text);
     return test::error_of([this] { Flight flight(path_); });
   };
-  EXPECT_THAT(refusal(head + values + "47079, 850\n"),
+  EXPECT_THAT(refusal(head + value_lines + "47079, 850\n"),
               test::IsError(Error::Code::file, "flight.ict:28", "4"));
   EXPECT_THAT(refusal(head + "47076, 850, , 0.3\n"), test::IsError(Error::Code::file, "flight.ict:25", "4"))
       << "a blank was read as 0";
   EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), test::IsError(Error::Code::file, "flight.ict:25", "4"));
   EXPECT_THAT(refusal("25, 2110\n"), test::IsError(Error::Code::file, "flight.ict:1", "2110"));
   EXPECT_THAT(refusal("25, 1001\nDoe\n"), test::IsError(Error::Code::file, "flight.ict:3"));
-  EXPECT_THAT(refusal("23" + head.substr(2) + values), test::IsError(Error::Code::file, "23"));
+  EXPECT_THAT(refusal("23" + head.substr(2) + value_lines), test::IsError(Error::Code::file, "23"));
   EXPECT_THAT(refusal(head), test::IsError(Error::Code::samples, "flight.ict"));
   EXPECT_THAT(refusal("70 people"), test::IsError(Error::Code::file, "flight.ict"));
 }
@@ -96,12 +96,12 @@ TEST_F(Icartt, OtherNumberOfFieldsIsRefused) {
     return test::error_of([this] { Flight flight(path_); });
   };
   const auto with_head = [](const std::string& old, const std::string& other) {
-    std::string text = head + values;
+    std::string text = head + value_lines;
     return text.replace(text.find(old), old.size(), other);
   };
-  EXPECT_THAT(refusal(head + values + "47079, 850, 300, 0.3, 5, 6\n"),
+  EXPECT_THAT(refusal(head + value_lines + "47079, 850, 300, 0.3, 5, 6\n"),
               test::IsError(Error::Code::file, "flight.ict:28", "4", "6"));
-  EXPECT_THAT(refusal(head + "47076,850,12,300,05,0,3\n" + values),
+  EXPECT_THAT(refusal(head + "47076,850,12,300,05,0,3\n" + value_lines),
               test::IsError(Error::Code::file, "flight.ict:25", "4", "7"));
   EXPECT_THAT(refusal(with_head("1, 0.1, 1", "1, 1, 0.1, 1")),
               test::IsError(Error::Code::file, "flight.ict:11", "3", "4"));
@@ -117,11 +117,11 @@ TEST_F(Icartt, CommaAfterTheLastFieldIsNoField) {
 TEST_F(Icartt, TruncatedLastRecordIsDroppedAndReported) {
   // 0.35 may be 0.359, and a record of two numbers has lost two.
   for (const char* const cut : {"47079, 850, 300, 0.35", "47079, 850"}) {
-    const Flight flight(write(head + values + cut));
+    const Flight flight(write(head + value_lines + cut));
     EXPECT_EQ(flight.records(), 3U);
     EXPECT_THAT(flight.file().notes(), ElementsAre(test::Says("line 28 of flight.ict")));
   }
-  EXPECT_TRUE(Flight(write(head + values)).file().notes().empty());
+  EXPECT_TRUE(Flight(write(head + value_lines)).file().notes().empty());
 }
 
 TEST_F(Icartt, CompleteLastRecordWithoutLineEndIsKept) {

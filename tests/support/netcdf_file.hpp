@@ -10,6 +10,8 @@
 
 namespace pcor::test {
 
+inline constexpr double midnight = 1077062400;  // 2004-02-18 00:00:00 UTC
+
 /// Writes a small netCDF file for a test: define a variable, then set its values. The destructor closes the
 /// file. Uses only the C library, independently of the tested readers and writers.
 class NetcdfMaker {
