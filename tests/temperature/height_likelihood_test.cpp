@@ -9,17 +9,16 @@
 #include <random>
 #include <vector>
 
-#include "support/synthetic_air.hpp"
 #include "temperature/height_least_squares.hpp"
+#include "temperature/synthetic_records.hpp"
 
 using namespace pcor::internal;
+using made::record_of;
 
 namespace {
 
 const Workers one_thread(pcor::serial_communicator(), 1);
 const Workers three_threads(pcor::serial_communicator(), 3);
-
-HeightRecord record_of(const made::AirPlan& plan) { return height_record(made::air(plan), {}, {}); }
 
 HeightRecord short_record() {
   made::AirPlan plan;

@@ -10,36 +10,30 @@
 
 #include <pcor/base/error.hpp>
 #include "support/error_of.hpp"
-#include "support/synthetic_air.hpp"
+#include "temperature/synthetic_records.hpp"
 
 using namespace pcor::internal;
 
 namespace {
 
+using made::range_of_excess;
 using pcor::Error;
 using pcor::test::IsError;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-HeightRecord record_of(const FlightAir& air, double min_climb_rate = 0.0) {
+HeightRecord record_of_air(const FlightAir& air, double min_climb_rate = 0.0) {
   HeightRecordOptions options;
   options.min_climb_rate = min_climb_rate;
   return height_record(air, {}, options);
 }
 
-double range_of_excess(const HeightRecord& record) {
-  const auto [minimum, maximum] =
-      std::minmax_element(record.blocks.begin(), record.blocks.end(),
-                          [](const HeightBlock& a, const HeightBlock& b) { return a.excess < b.excess; });
-  return maximum->excess - minimum->excess;
-}
-
 std::optional<Error> refusal(const FlightAir& air) {
-  return pcor::test::error_of([&] { record_of(air); });
+  return pcor::test::error_of([&] { record_of_air(air); });
 }
 
 TEST(HeightRecord, IntegralEqualsTheClosedForm) {
-  const HeightRecord record = record_of(made::air({}));
+  const HeightRecord record = record_of_air(made::air({}));
   EXPECT_EQ(record.segments, 1U);
   EXPECT_EQ(record.samples, 5400U);
   // The trapezium rule over 3 m errs by less than 1e-8 of the height; rounding of 5400 steps is smaller.
@@ -47,11 +41,11 @@ TEST(HeightRecord, IntegralEqualsTheClosedForm) {
 }
 
 TEST(HeightRecord, ThermometerErrorMatchesTheColumns) {
-  const HeightRecord truth = record_of(made::air({}));
+  const HeightRecord truth = record_of_air(made::air({}));
   made::AirPlan plan;
   plan.offset = 0.5;
   plan.gain = 0.01;
-  const HeightRecord wrong = record_of(made::air(plan));
+  const HeightRecord wrong = record_of_air(made::air(plan));
   // T = (T_m - offset')/(1 + gain) with t_m = t + offset + gain t: the correction that undoes it exactly.
   const double a0 = -0.5 / 1.01;
   const double a1 = -0.01 / 1.01;
@@ -65,9 +59,9 @@ TEST(HeightRecord, ThermometerErrorMatchesTheColumns) {
 
 TEST(HeightRecord, StaticPressureErrorMatchesTheFiniteDifference) {
   FlightAir air = made::air({});
-  const HeightRecord truth = record_of(air);
+  const HeightRecord truth = record_of_air(air);
   for (double& p : air.pressure) p += 0.1;
-  const HeightRecord wrong = record_of(air);
+  const HeightRecord wrong = record_of_air(air);
   for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
     // To first order in 0.1 hPa, which is 1e-4 to 2e-4 of the pressure, of at most 0.8 m.
     EXPECT_NEAR(wrong.blocks[i].excess - truth.blocks[i].excess, 0.1 * truth.blocks[i].columns[lasting],
@@ -82,7 +76,7 @@ TEST(HeightRecord, HumidityErrorMatchesTheFiniteDifference) {
   const auto moist = [&](double part) {
     for (std::size_t i = 0; i < air.size(); ++i)
       air.gas_constant[i] = dry * (1.0 + part * 0.005 * std::pow(air.pressure[i] / 1000.0, 3));
-    return record_of(air);
+    return record_of_air(air);
   };
   const HeightRecord measured = moist(1.0);
   const HeightRecord truth = moist(1.2);
@@ -131,10 +125,10 @@ TEST(HeightRecord, LawErrorsMatchTheFiniteDifferences) {
 TEST(HeightRecord, RestartsAfterALongGapOnly) {
   FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1005; ++i) air.pressure[i] = nan;
-  EXPECT_EQ(record_of(air).segments, 1U);
-  EXPECT_LT(range_of_excess(record_of(air)), 2e-3);
+  EXPECT_EQ(record_of_air(air).segments, 1U);
+  EXPECT_LT(range_of_excess(record_of_air(air)), 2e-3);
   for (std::size_t i = 2000; i < 2030; ++i) air.temperature[i] = nan;
-  const HeightRecord record = record_of(air);
+  const HeightRecord record = record_of_air(air);
   EXPECT_EQ(record.segments, 2U);
   EXPECT_EQ(std::count_if(record.blocks.begin(), record.blocks.end(),
                           [](const HeightBlock& block) { return block.starts_segment; }),
@@ -144,7 +138,7 @@ TEST(HeightRecord, RestartsAfterALongGapOnly) {
 TEST(HeightRecord, MissingHeightIsNotAGap) {
   FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1600; ++i) air.geopotential_height[i] = nan;
-  const HeightRecord record = record_of(air);
+  const HeightRecord record = record_of_air(air);
   EXPECT_EQ(record.segments, 1U);
   EXPECT_EQ(record.missing_heights, 600U);
   EXPECT_LT(range_of_excess(record), 1e-3);
@@ -154,15 +148,15 @@ TEST(HeightRecord, ExcludesSpikesAndRestartsAtSteps) {
   FlightAir air = made::air({});
   for (std::size_t i = 500; i < 520; ++i) air.geopotential_height[i] += 40.0;
   for (std::size_t i = 3000; i < air.size(); ++i) air.geopotential_height[i] -= 15.0;
-  const HeightRecord record = record_of(air);
+  const HeightRecord record = record_of_air(air);
   EXPECT_EQ(record.height_spikes, 20U);
   EXPECT_EQ(record.height_steps, 1U);
   EXPECT_EQ(record.segments, 2U);
 }
 
 TEST(HeightRecord, MinimumClimbRateSelectsBlocks) {
-  const HeightRecord all = record_of(made::air({}));
-  const HeightRecord climbs = record_of(made::air({}), 2.0);
+  const HeightRecord all = record_of_air(made::air({}));
+  const HeightRecord climbs = record_of_air(made::air({}), 2.0);
   EXPECT_LT(climbs.blocks.size(), all.blocks.size());
   EXPECT_GE(climbs.segments, 3U);  // three climbs and descents in one and a half periods
   for (const HeightBlock& block : climbs.blocks) EXPECT_GE(std::abs(block.climb), 2.0);
@@ -173,7 +167,7 @@ TEST(HeightRecord, ArchivedStepsReplacePressureAndHumidity) {
   std::vector<double> steps(air.size(), nan);
   for (std::size_t i = 1; i < air.size(); ++i)
     steps[i] = -air.gas_constant[i] / 9.80665 * std::log(air.pressure[i] / air.pressure[i - 1]);
-  const HeightRecord direct = record_of(air);
+  const HeightRecord direct = record_of_air(air);
   const HeightRecord archived = height_record(air, steps, {});
   ASSERT_EQ(direct.blocks.size(), archived.blocks.size());
   for (std::size_t i = 0; i < direct.blocks.size(); ++i)
@@ -191,21 +185,21 @@ void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
 
 TEST(HeightRecord, UsesAirspeedWithoutGroundSpeed) {
   FlightAir air = made::air({});  // flight in calm air
-  const HeightRecord over_ground = record_of(air);
+  const HeightRecord over_ground = record_of_air(air);
   EXPECT_EQ(over_ground.way, WayKnown::over_ground);
   air.east_speed.clear();
   air.north_speed.clear();
-  const HeightRecord through_air = record_of(air);
+  const HeightRecord through_air = record_of_air(air);
   EXPECT_EQ(through_air.way, WayKnown::through_air);
   expect_same_way(through_air, over_ground);
 }
 
 TEST(HeightRecord, AirPathFillsGapsOfTheGroundPath) {
   FlightAir air = made::air({});
-  const HeightRecord whole = record_of(air);
+  const HeightRecord whole = record_of_air(air);
   EXPECT_EQ(whole.unknown_ways, 0U);
   for (std::size_t i = 2000; i < 3000; ++i) air.east_speed[i] = nan;
-  const HeightRecord gap = record_of(air);
+  const HeightRecord gap = record_of_air(air);
   EXPECT_EQ(gap.unknown_ways, 1000U);
   EXPECT_EQ(gap.way, WayKnown::over_ground);
   expect_same_way(gap, whole);
@@ -218,7 +212,7 @@ TEST(HeightRecord, WithoutHeadingThePathIsStraight) {
   auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
   samples->motion.heading.clear();
   air.samples = samples;
-  const HeightRecord record = record_of(air);
+  const HeightRecord record = record_of_air(air);
   EXPECT_EQ(record.way, WayKnown::length);
   EXPECT_FALSE(record.returns);
   const double start = record.blocks.front().north;
@@ -232,13 +226,13 @@ TEST(HeightRecord, WithoutHeadingThePathIsStraight) {
 TEST(HeightRecord, DetectsWhetherTheFlightReturns) {
   made::AirPlan plan;
   plan.seconds = 4500;  // three times round
-  EXPECT_TRUE(record_of(made::air(plan)).returns);
+  EXPECT_TRUE(record_of_air(made::air(plan)).returns);
   FlightAir through_air = made::air(plan);
   through_air.east_speed.clear();
   through_air.north_speed.clear();
-  EXPECT_FALSE(record_of(through_air).returns);  // the wind may have taken it anywhere
-  plan.turning = 1e9;                            // straight on
-  EXPECT_FALSE(record_of(made::air(plan)).returns);
+  EXPECT_FALSE(record_of_air(through_air).returns);  // the wind may have taken it anywhere
+  plan.turning = 1e9;                                // straight on
+  EXPECT_FALSE(record_of_air(made::air(plan)).returns);
 }
 
 TEST(HeightRecord, ReportsErrorsOfTheHeight) {

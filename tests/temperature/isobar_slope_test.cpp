@@ -3,16 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "support/says.hpp"
-#include "support/synthetic_air.hpp"
+#include "temperature/synthetic_records.hpp"
 
 using namespace pcor::internal;
 
 namespace {
 
+using made::range_of_excess;
+using made::record_of;
 using pcor::IsobarSlope;
 using testing::ElementsAre;
 
@@ -23,15 +24,6 @@ made::AirPlan sloping() {
   plan.slope_east = 1e-4;
   plan.slope_north = -5e-5;
   return plan;
-}
-
-HeightRecord record_of(const made::AirPlan& plan) { return height_record(made::air(plan), {}, {}); }
-
-double range_of_excess(const HeightRecord& record) {
-  const auto [minimum, maximum] =
-      std::minmax_element(record.blocks.begin(), record.blocks.end(),
-                          [](const HeightBlock& a, const HeightBlock& b) { return a.excess < b.excess; });
-  return maximum->excess - minimum->excess;
 }
 
 TEST(IsobarSlope, ClimbDescentAndWholeFlightEstimateTheSlope) {
