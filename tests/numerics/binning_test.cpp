@@ -4,18 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <vector>
 
 #include "numerics/spikes.hpp"
+#include "support/constants.hpp"
 
 using namespace pcor::internal;
+using pcor::test::missing;
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> seconds(std::size_t count, double step = 1.0) {
   std::vector<double> time(count);

@@ -6,22 +6,18 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
+#include "support/bins.hpp"
+#include "support/constants.hpp"
+
 using namespace pcor::internal;
+using pcor::test::bin_step;
+using pcor::test::bins_of;
+using pcor::test::missing;
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double step = 4.0;  // s: every record is a bin
-
-Binning bins_of(const std::vector<double>& residual) {
-  std::vector<double> time(residual.size());
-  for (std::size_t i = 0; i < time.size(); ++i) time[i] = 1000.0 + step * static_cast<double>(i);
-  return Binning(residual, time, step);
-}
 
 /// A process of second order with poles 0.5 +- 0.5i whose innovations have the deviation `level(i)`.
 template <class Level>
@@ -144,7 +140,7 @@ TEST(NoiseModel, SlowDriftDoesNotChangeTheEstimate) {
   const Eigen::VectorXd residual = second_order(count, 13, level);
   Eigen::VectorXd drifting = residual;
   for (Eigen::Index i = 0; i < drifting.size(); ++i)
-    drifting[i] += 2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) * step / 1500.0);
+    drifting[i] += 2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) * bin_step / 1500.0);
   const NoiseModel without = estimate_noise(bins, {residual});
   const NoiseModel with = estimate_noise(bins, {drifting});
   ASSERT_GE(with.coefficients.size(), 2U);

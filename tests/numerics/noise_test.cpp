@@ -2,21 +2,21 @@
 #include <pcor/numerics/noise.hpp>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <random>
 #include <vector>
+
+#include "support/constants.hpp"
 
 // Series with known autocovariance.
 
 using pcor::NoiseFloor;
 using pcor::Segment;
+using pcor::test::missing;
 
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<double> seconds(std::size_t count) {
+std::vector<double> seconds_from_zero(std::size_t count) {
   std::vector<double> time(count);
   std::iota(time.begin(), time.end(), 0.0);
   return time;
@@ -36,14 +36,14 @@ std::vector<double> first_order(std::size_t count, double memory, unsigned seed)
 }
 
 std::vector<Segment> whole(const std::vector<double>& values) {
-  return pcor::contiguous_segments(values, seconds(values.size()), 1.0);
+  return pcor::contiguous_segments(values, seconds_from_zero(values.size()), 1.0);
 }
 
 }  // namespace
 
 TEST(Segments, EndAtMissingValuesAndGaps) {
   const std::vector<double> values{1, 2, missing, 3, 4, 5, missing, missing, 6};
-  std::vector<double> time = seconds(values.size());
+  std::vector<double> time = seconds_from_zero(values.size());
   time[5] += 10;
   for (std::size_t i = 6; i < time.size(); ++i) time[i] += 10;
   const std::vector<Segment> segments = pcor::contiguous_segments(values, time, 1.0);

@@ -6,31 +6,26 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
 #include "numerics/median.hpp"
+#include "support/bins.hpp"
+#include "support/constants.hpp"
 
 using namespace pcor::internal;
+using pcor::test::bin_step;
+using pcor::test::bins_of;
+using pcor::test::missing;
 
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-constexpr double step = 4.0;  // s: every record is a bin
-
-Binning bins_of(const std::vector<double>& residual) {
-  std::vector<double> time(residual.size());
-  for (std::size_t i = 0; i < time.size(); ++i) time[i] = 1000.0 + step * static_cast<double>(i);
-  return Binning(residual, time, step);
-}
 
 /// White noise of the given deviation and a first-order process of `slow` hPa with a correlation time of
 /// `memory` s.
 Eigen::VectorXd drifting(std::size_t count, unsigned seed, double white, double slow, double memory) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
-  const double keep = std::exp(-step / memory);
+  const double keep = std::exp(-bin_step / memory);
   double drift = slow * normal(engine);
   Eigen::VectorXd values(static_cast<Eigen::Index>(count));
   for (Eigen::Index i = 0; i < values.size(); ++i) {
