@@ -25,11 +25,11 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 
-const std::filesystem::path published = PCOR_SOURCE_DIR "/data/models/c130-psfd-eq18.toml";
+const std::filesystem::path published_file = PCOR_SOURCE_DIR "/data/models/c130-psfd-eq18.toml";
 
 /// The published model as a refit leaves it, with errors and covariance of its pressure law.
 ModelDefinition fitted_model() {
-  ModelDefinition file = read_model(published);
+  ModelDefinition file = read_model(published_file);
   file.fits = {{{false, 1e-4, {}}}, {{true, 2e-4, {}}}, {{false, 3e-4, Bounds{0.0, 0.1}}}};
   file.covariance = {{"static-constant.a0", "static-qp.a2"}, {{1e-8, 2e-9}, {2e-9, 9e-8}}};
   file.provenance.emplace_back("rms_hpa", ProvenanceValue{0.3});
@@ -76,7 +76,7 @@ double applied(const ModelDefinition& file, double celsius) {
 // `write_model` restores a model to the last bit, so models with the same text are the same.
 
 TEST(Calibration, RemovalRestoresTheModel) {
-  for (const ModelDefinition& file : {read_model(published), fitted_model()}) {
+  for (const ModelDefinition& file : {read_model(published_file), fitted_model()}) {
     EXPECT_EQ(write_model(without_calibration(file)), write_model(file));
     EXPECT_EQ(write_model(without_calibration(with_curve(file))), write_model(file));
   }

@@ -23,6 +23,7 @@
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/physics/lams.hpp>
 #include <pcor/physics/recovery_factor.hpp>
+#include "model_io/minimum_model.hpp"
 #include "model_io/output_table.hpp"
 #include "support/error_of.hpp"
 #include "support/temporary_directory.hpp"
@@ -33,6 +34,7 @@ namespace fs = std::filesystem;
 using namespace pcor;
 using test::error_of;
 using test::IsError;
+using test::minimum_model;
 using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -87,13 +89,6 @@ formula = "k * ENGTRQ / 100"               # added to delta-p, hPa; variables by
 parameters = { k = 0.0 }
 unit = "hPa"
 source = "engine run-up, 2011-11-02"
-)";
-
-// The smallest valid model. Additions of a test begin at line 5.
-const std::string minimum = R"(format = "pcor-model/1"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
 )";
 
 ModelDefinition parsed(std::string_view text) { return parse_model(text, "m.toml"); }
@@ -437,8 +432,6 @@ class ModelFileOnDisk : public testing::Test {
   test::TemporaryDirectory directory_;
 };
 
-}  // namespace
-
 TEST(ModelDefinition, VariablesMayComeFromTheAircraftRoles) {
   const ModelDefinition file = parse_model("format = \"pcor-model/1\"\nroles = \"faam-core\"\n", "open.toml");
   EXPECT_TRUE(file.variables.empty());
@@ -484,7 +477,7 @@ TEST(ModelDefinition, ReadsThePublishedFormulaEffect) {
 }
 
 TEST(ModelDefinition, IsWrittenInTheLayoutOfTheExample) {
-  EXPECT_EQ(write_model(parsed(minimum + published_formula)), R"(format = "pcor-model/1"
+  EXPECT_EQ(write_model(parsed(minimum_model + published_formula)), R"(format = "pcor-model/1"
 
 [variables]
 static_pressure = "PSFD"
@@ -501,7 +494,7 @@ source = "engine run-up, 2011-11-02"
 }
 
 TEST(ModelDefinition, ReadsEveryTable) {
-  const ModelDefinition file = parsed(minimum + R"(dew_point = "DPXC"
+  const ModelDefinition file = parsed(minimum_model + R"(dew_point = "DPXC"
 flaps = "FLAPS"
 [units]
 static_pressure = "mbar"
@@ -583,7 +576,7 @@ apple = { used = 12, share = 0.5, clean = true }
 
 // Uncertainties of fitted parameters, of parameters that are only considered, and of samples.
 TEST(ModelDefinition, ReadsAllUncertainties) {
-  const ModelDefinition file = parsed(minimum + R"([[effect]]
+  const ModelDefinition file = parsed(minimum_model + R"([[effect]]
 id = "static-constant"
 parameters = { a0 = 0.004 }
 stderr = { a0 = 1e-4 }
@@ -608,19 +601,19 @@ static_defect_ratio = 0.00045
   EXPECT_EQ(uncertainty.random[index(Quantity::dynamic_pressure)], 0.03);
   EXPECT_EQ(uncertainty.random[index(Quantity::static_pressure)], 0.0);
   EXPECT_EQ(uncertainty.static_defect_ratio, 0.00045);
-  EXPECT_FALSE(uncertainty_of(parsed(minimum)).has_systematic());
+  EXPECT_FALSE(uncertainty_of(parsed(minimum_model)).has_systematic());
 }
 
 TEST(ModelDefinition, UncertaintyIsNamedAfterItsResult) {
   const ModelDefinition file =
-      parsed(minimum + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n");
+      parsed(minimum_model + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n");
   EXPECT_EQ(file.output_name("PSXC_uncertainty"), "PSFDC_uncertainty");
   EXPECT_EQ(file.output_name("QCXC_uncertainty"), "U");
   EXPECT_EQ(file.output_name("ATX_uncertainty"), "ATX_uncertainty");
 }
 
 TEST(ModelDefinition, DefaultBoundsAreThoseOfTheCatalogue) {
-  const ModelDefinition file = parsed(minimum + "[[effect]]\nid = \"recovery-factor\"\n");
+  const ModelDefinition file = parsed(minimum_model + "[[effect]]\nid = \"recovery-factor\"\n");
   EXPECT_EQ(file.bounds(0, 0).lower, -0.2);
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
@@ -655,7 +648,7 @@ TEST(ModelDefinition, AnEffectIsNeutralIfItChangesNothing) {
 
 TEST(ModelDefinition, ThirdLamsApproachReadsBothTemperatures) {
   const std::string both = "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n";
-  const ModelDefinition file = parsed(minimum + both + "[lams]\napproach = 3\n");
+  const ModelDefinition file = parsed(minimum_model + both + "[lams]\napproach = 3\n");
   EXPECT_EQ(file.variables.count(Quantity::recovery_temperature), 1u);
   EXPECT_EQ(file.variables.count(Quantity::ambient_temperature), 1u);
 }
@@ -681,7 +674,7 @@ TEST(ModelDefinition, WriteAndReadRestoreEveryBit) {
 
 TEST(ModelDefinition, FormulaVariableOfARoleIsThatRole) {
   const auto formula = [](const std::string& text, const std::string& parameters = "k = 1") {
-    return parsed(minimum +
+    return parsed(minimum_model +
                   "ground_speed = \"E5\"\nrecovery_temperature = \"T\"\nroll = \"pitch\"\n[[effect]]\n" +
                   "id = \"own\"\nformula = \"" + text + "\"\nparameters = { " + parameters + " }\n")
         .model.effects[0]
@@ -702,15 +695,16 @@ TEST(ModelDefinition, SensorNoiseNeedsNoVariableWithoutPressures) {
   const std::string start = "format = \"pcor-model/1\"\n";
   for (const std::string section : {"[units]\nattack = \"deg\"\n", "[uncertainty]\nattack = 0.1\n"}) {
     EXPECT_EQ(parse_error_of(start + section), std::nullopt) << section;
-    EXPECT_THAT(parse_error_of(minimum + section), IsError(Error::Code::definition, "attack")) << section;
+    EXPECT_THAT(parse_error_of(minimum_model + section), IsError(Error::Code::definition, "attack"))
+        << section;
   }
   EXPECT_EQ(parsed(start + "[uncertainty]\nattack = 0.1\n").uncertainty.roles.at(Quantity::attack), 0.1);
 }
 
 TEST(ModelDefinition, MinimumDynamicPressureHasTwoNames) {
   const std::string alias = "[policy]\nmin_dynamic_pressure = 4.5\n";
-  EXPECT_EQ(parsed(minimum + alias).model.policy.min_dynamic_pressure, 4.5);
-  EXPECT_THAT(parse_error_of(minimum + alias + "least_dynamic_pressure = 5\n"),
+  EXPECT_EQ(parsed(minimum_model + alias).model.policy.min_dynamic_pressure, 4.5);
+  EXPECT_THAT(parse_error_of(minimum_model + alias + "least_dynamic_pressure = 5\n"),
               IsError(Error::Code::definition, "min_dynamic_pressure", "least_dynamic_pressure"));
 }
 
@@ -763,7 +757,7 @@ class BadInputTest : public testing::TestWithParam<BadInput> {};
 TEST_P(BadInputTest, ErrorStatesPositionAndNames) {
   const BadInput& input = GetParam();
   const bool whole = input.text[0] == '\n' || input.text.rfind("format", 0) == 0;
-  const std::optional<Error> error = parse_error_of(whole ? input.text : minimum + input.text);
+  const std::optional<Error> error = parse_error_of(whole ? input.text : minimum_model + input.text);
   EXPECT_THAT(error, IsError(Error::Code::definition, "m.toml:" + input.position));
   for (const std::string& name : input.names) EXPECT_THAT(error, IsError(Error::Code::definition, name));
 }
@@ -1013,14 +1007,14 @@ TEST(ModelDefinition, UnreadableDefinitionCannotBeWritten) {
 }
 
 TEST(ModelDefinition, ChangedRecoveryFactorLosesPublishedName) {
-  ModelDefinition file = parsed(minimum + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n");
+  ModelDefinition file = parsed(minimum_model + "[temperature]\nrecovery_factor = \"rosemount-heated\"\n");
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = \"rosemount-heated\""));
   file.model.recovery.coefficients[0] = 0.96;
   EXPECT_THAT(write_model(file), HasSubstr("recovery_factor = 0.96\n"));
 }
 
 TEST_F(ModelFileOnDisk, ErrorNamesTheFile) {
-  const fs::path path = write("bad.toml", minimum + "[lams]\nelevation = nan\n");
+  const fs::path path = write("bad.toml", minimum_model + "[lams]\nelevation = nan\n");
   EXPECT_THAT(read_error_of(path), IsError(Error::Code::definition, path.string() + ":6:13"));
 }
 
@@ -1062,5 +1056,7 @@ TEST_F(ModelFileOnDisk, UnwritableModelKeepsTheFile) {
 }
 
 TEST_F(ModelFileOnDisk, SavingToAMissingDirectoryFails) {
-  EXPECT_THROW(save_model(parsed(minimum), directory_ / "none" / "m.toml", {}), Error);
+  EXPECT_THROW(save_model(parsed(minimum_model), directory_ / "none" / "m.toml", {}), Error);
 }
+
+}  // namespace

@@ -19,23 +19,19 @@
 #include <pcor/model_io/model_definition.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 #include <pcor/realtime/chain.hpp>
+#include "model_io/minimum_model.hpp"
 #include "model_io/output_table.hpp"
 
 namespace pcor {
 namespace {
 
+using test::minimum_model;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::Not;
 using testing::UnorderedElementsAreArray;
 
 using Lines = std::vector<std::string>;
-
-const std::string minimum = R"(format = "pcor-model/1"
-[variables]
-static_pressure = "PSFD"
-dynamic_pressure = "QCF"
-)";
 
 Lines reference() {
   std::ifstream file(PCOR_SOURCE_DIR "/data/models/FORMAT.md");
@@ -62,14 +58,14 @@ std::vector<Lines> tables(const std::string& first) {
 }
 
 // The name in backquotes with which a row begins.
-std::string to_string(const std::string& row) {
+std::string first_cell(const std::string& row) {
   const std::size_t begin = row.find('`') + 1;
   return row.substr(begin, row.find('`', begin) - begin);
 }
 
-Lines names_of(const Lines& rows) {
+Lines first_cells(const Lines& rows) {
   Lines names;
-  for (const std::string& row : rows) names.push_back(to_string(row));
+  for (const std::string& row : rows) names.push_back(first_cell(row));
   return names;
 }
 
@@ -113,7 +109,7 @@ Lines names_listed_in(const std::string& message, const std::string& before) {
   return names;
 }
 
-std::string error_of(const std::string& text) {
+std::string message_of(const std::string& text) {
   try {
     parse_model(text, "m.toml");
   } catch (const Error& error) {
@@ -177,26 +173,26 @@ TEST(ModelFormat, ListsTheQualityBits) {
 
 TEST(ModelFormat, ListsTheResults) {
   ASSERT_EQ(tables("result").size(), 1u);
-  EXPECT_THAT(names_of(tables("result")[0]), ElementsAreArray(internal::output_names()));
+  EXPECT_THAT(first_cells(tables("result")[0]), ElementsAreArray(internal::output_names()));
 }
 
 TEST(ModelFormat, ListsTheKeysOfEveryTable) {
   const std::string unknown = "zzzzzzzz = 1\n";
-  EXPECT_THAT(names_of(rows_below("## Top-level keys")),
+  EXPECT_THAT(first_cells(rows_below("## Top-level keys")),
               UnorderedElementsAreArray(
-                  names_listed_in(error_of("format = \"pcor-model/1\"\n" + unknown), "use one of ")));
+                  names_listed_in(message_of("format = \"pcor-model/1\"\n" + unknown), "use one of ")));
   for (const std::string table : {"[lams]", "[temperature]", "[humidity]", "[radome]", "[policy]",
                                   "[[effect]]", "[law]", "[covariance]"}) {
-    const Lines keys = names_listed_in(error_of(minimum + table + "\n" + unknown), "use one of ");
+    const Lines keys = names_listed_in(message_of(minimum_model + table + "\n" + unknown), "use one of ");
     EXPECT_THAT(keys, Not(testing::IsEmpty())) << table;
-    EXPECT_THAT(names_of(rows_below("## " + table)), UnorderedElementsAreArray(keys)) << table;
+    EXPECT_THAT(first_cells(rows_below("## " + table)), UnorderedElementsAreArray(keys)) << table;
   }
 }
 
 TEST(ModelFormat, ListsTheLanguageOfFormulas) {
   ASSERT_EQ(tables("write").size(), 1u);
   Lines functions;
-  for (const std::string& formula : names_of(tables("write")[0])) {
+  for (const std::string& formula : first_cells(tables("write")[0])) {
     FormulaError error;
     EXPECT_TRUE(Formula::parse(formula, {}, &error)) << error.message;
     const std::size_t bracket = formula.find('(');
@@ -225,8 +221,8 @@ TEST(ModelFormat, ExamplesAreRead) {
     } else if (line == "```" && example) {
       std::string text = *example;
       if (text.rfind("[variables]", 0) == 0) text = "format = \"pcor-model/1\"\n" + text;
-      if (text.rfind("format", 0) != 0) text = minimum + text;
-      EXPECT_EQ(error_of(text), "no error") << *example;
+      if (text.rfind("format", 0) != 0) text = minimum_model + text;
+      EXPECT_EQ(message_of(text), "no error") << *example;
       ++examples;
       example.reset();
     } else if (example) {

@@ -28,7 +28,7 @@ id = "static-constant"
 )" + more;
 }
 
-std::vector<std::string> names_of(const std::vector<SensorDoubt>& doubts) {
+std::vector<std::string> parameters_of(const std::vector<SensorDoubt>& doubts) {
   std::vector<std::string> names;
   for (const SensorDoubt& doubt : doubts) names.push_back(doubt.name());
   return names;
@@ -40,17 +40,17 @@ std::vector<SensorDoubt> thermometer_of(const std::string& more) {
 
 TEST(SensorDoubt, ModelPriorOverridesTheCatalogue) {
   const auto usual = thermometer_of("");
-  EXPECT_THAT(names_of(usual), ElementsAre("temp-offset.offset", "recovery-factor.da"));
+  EXPECT_THAT(parameters_of(usual), ElementsAre("temp-offset.offset", "recovery-factor.da"));
   EXPECT_DOUBLE_EQ(usual[0].size, 0.3);
   EXPECT_DOUBLE_EQ(usual[1].size, 0.005);
   const auto stated =
       thermometer_of("[uncertainty]\n\"temp-offset.offset\" = 0.05\n\"recovery-factor.da\" = 0\n");
-  EXPECT_THAT(names_of(stated), ElementsAre("temp-offset.offset"));
+  EXPECT_THAT(parameters_of(stated), ElementsAre("temp-offset.offset"));
   EXPECT_DOUBLE_EQ(stated[0].size, 0.05);
   // An effect of the model defines the uncertainty of the sensor.
-  EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-offset\"\n")),
+  EXPECT_THAT(parameters_of(thermometer_of("[[effect]]\nid = \"temp-offset\"\n")),
               ElementsAre("recovery-factor.da"));
-  EXPECT_THAT(names_of(thermometer_of("[[effect]]\nid = \"temp-calibration\"\n")),
+  EXPECT_THAT(parameters_of(thermometer_of("[[effect]]\nid = \"temp-calibration\"\n")),
               ElementsAre("recovery-factor.da"));
   EXPECT_THROW(thermometer_of("[uncertainty]\n\"static-constant.a0\" = 0.05\n"), Error);
 }
