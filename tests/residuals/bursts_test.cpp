@@ -19,14 +19,14 @@ namespace {
 using Series = std::vector<double>;
 
 /// An hour of a dynamic pressure with gusts, and the residual of a reference that responds to them.
-struct Flight {
+struct GustyFlight {
   Series pressure{};
   Series residual{};
   Series time{};
   std::mt19937_64 engine{1};
   std::normal_distribution<double> normal{};
 
-  Flight() {
+  GustyFlight() {
     for (int i = 0; i < 3600; ++i) {
       const double gusts = i > 1800 && i < 2400 ? 2.0 : 0.2;  // hPa
       time.push_back(i);
@@ -49,12 +49,12 @@ struct Flight {
 
 TEST(Bursts, GustsAndManoeuvresAreNotBursts) {
   // The gusts begin and end within seconds: the residual shows no part of them.
-  EXPECT_THAT(Flight().bursts(), IsEmpty());
+  EXPECT_THAT(GustyFlight().bursts(), IsEmpty());
 }
 
 TEST(Bursts, WholeBurstIsMasked) {
   for (const std::size_t length : {1U, 5U, 15U}) {
-    Flight flight;
+    GustyFlight flight;
     flight.disturb(1000, length, 8.0, 0.0);
     // The sample before and the sample after the jump, and three more on either side, are masked.
     EXPECT_THAT(flight.bursts(), AllOf(Each(Ge(996U)), Each(Le(1003U + length)))) << length;
@@ -63,7 +63,7 @@ TEST(Bursts, WholeBurstIsMasked) {
 }
 
 TEST(Bursts, ShortNoiseIsABurst) {
-  Flight flight;
+  GustyFlight flight;
   flight.disturb(1000, 18, 0.0, 6.0);
   const std::vector<std::size_t> bursts = flight.bursts();
   EXPECT_THAT(bursts, AllOf(Each(Ge(996U)), Each(Le(1021U))));
@@ -71,13 +71,13 @@ TEST(Bursts, ShortNoiseIsABurst) {
 }
 
 TEST(Bursts, StepOfTheResidualAloneIsNotABurst) {
-  Flight flight;
+  GustyFlight flight;
   for (std::size_t i = 1000; i < 1015; ++i) flight.residual[i] += 8.0;
   EXPECT_THAT(flight.bursts(), IsEmpty()) << "the pressure returns to its old level";
 }
 
 TEST(Bursts, LongNoiseIsNotABurst) {
-  Flight flight;
+  GustyFlight flight;
   flight.disturb(1000, 120, 0.0, 6.0);
   EXPECT_THAT(flight.bursts(), IsEmpty()) << "a sensor that has become noisy is not a burst";
 }

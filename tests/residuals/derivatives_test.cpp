@@ -26,7 +26,7 @@ using pcor::State;
 
 namespace {
 
-using Jet = ceres::Jet<double, 4>;
+using Jet4 = ceres::Jet<double, 4>;
 
 // With a step of 1e-5 of the range of x, a central difference errs by 1e-10 of f''' x^3/6 and by 1e-11 of
 // rounding of f: 1e-6 of f/x covers both for powers up to the fourth.
@@ -39,8 +39,8 @@ double difference(const Function& f, Point at, Index index, double h) {
   return (above - f(at)) / (2 * h);
 }
 
-std::vector<Jet> dual(const std::vector<double>& parameters) {
-  std::vector<Jet> result;
+std::vector<Jet4> dual(const std::vector<double>& parameters) {
+  std::vector<Jet4> result;
   for (std::size_t i = 0; i < parameters.size(); ++i) result.emplace_back(parameters[i], static_cast<int>(i));
   return result;
 }
@@ -75,14 +75,12 @@ class EveryEffect : public testing::TestWithParam<std::size_t> {
   }
 };
 
-}  // namespace
-
 TEST_P(EveryEffect, DerivativeByEachParameterIsCorrect) {
   Engine engine(20120106);
   for (int n = 0; n < 20; ++n) {
     const State<double> state = draw_state(info(), engine);
     const std::vector<double> parameters = draw_parameters(info(), engine);
-    const Jet result = effect_functions<double, Jet>[GetParam()](state, dual(parameters).data());
+    const Jet4 result = effect_functions<double, Jet4>[GetParam()](state, dual(parameters).data());
     const double plain = value(state, parameters);
     EXPECT_NEAR(result.a, plain, 1e-14 * std::abs(plain));
     for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -100,10 +98,10 @@ TEST_P(EveryEffect, DerivativeByEachInputIsCorrect) {
   for (int n = 0; n < 20; ++n) {
     const State<double> state = draw_state(info(), engine);
     const std::vector<double> parameters = draw_parameters(info(), engine);
-    State<Jet> dual;
+    State<Jet4> dual;
     for (std::size_t i = 0; i < info().need_count(); ++i)
-      dual[info().needs[i]] = Jet(state[info().needs[i]], static_cast<int>(i));
-    const Jet result = effect_functions<Jet, double>[GetParam()](dual, parameters.data());
+      dual[info().needs[i]] = Jet4(state[info().needs[i]], static_cast<int>(i));
+    const Jet4 result = effect_functions<Jet4, double>[GetParam()](dual, parameters.data());
     const double plain = value(state, parameters);
     EXPECT_NEAR(result.a, plain, 1e-14 * std::abs(plain));
     for (std::size_t i = 0; i < info().need_count(); ++i) {
@@ -121,8 +119,6 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::Range<std::size_t>(0, 
                          [](const auto& effect) {
                            return pcor::test::test_name(effect_info[effect.param].id);
                          });
-
-namespace {
 
 ModelEffect effect(std::string id, double parameter) {
   ModelEffect result;
@@ -201,16 +197,14 @@ State<S> run(const Chain& chain, const std::vector<S>& parameters) {
   return state;
 }
 
-}  // namespace
-
 TEST(Chain, StaticDefectSeparatesStateFromParameters) {
   // The Jacobian of eq. 18 is its basis: p, ADIFR/QCR p and q.
   const Chain chain = build(memo_model(false));
   State<double> state = recorded_state<double>();
   pcor::NoQualityFlags none;
   chain.measure(state, chain.parameters().data(), none);
-  const std::vector<Jet> parameters = dual(chain.parameters());
-  const Jet defect = chain.static_defect(state, parameters.data(), none);
+  const std::vector<Jet4> parameters = dual(chain.parameters());
+  const Jet4 defect = chain.static_defect(state, parameters.data(), none);
   EXPECT_EQ(defect.a, chain.static_defect(state, chain.parameters().data(), none));
   EXPECT_NEAR(defect.v[0], 697, 1e-12);
   EXPECT_NEAR(defect.v[1], -20.0 / 69 * 697, 1e-12);
@@ -224,7 +218,7 @@ TEST(Chain, StaticDefectDerivativeIncludesThePolicy) {
   State<double> state = recorded_state<double>();
   pcor::NoQualityFlags none;
   chain.measure(state, chain.parameters().data(), none);
-  Jet defect = chain.static_defect(state, dual(chain.parameters()).data(), none);
+  Jet4 defect = chain.static_defect(state, dual(chain.parameters()).data(), none);
   EXPECT_NEAR(defect.v[0], 697.0 / 8, 1e-10);
 
   model.policy.taper_below = 0;
@@ -239,7 +233,7 @@ TEST(Chain, EveryStageHasCorrectDerivatives) {
   // The whole chain with every number dual: 1e-6 relative, from the central difference.
   for (const bool upstream : {false, true}) {
     const Chain chain = build(memo_model(upstream));
-    const State<Jet> state = run(chain, dual(chain.parameters()));
+    const State<Jet4> state = run(chain, dual(chain.parameters()));
     const State<double> plain = run(chain, chain.parameters());
     for (const Quantity quantity :
          {Quantity::port_static_pressure, Quantity::static_defect, Quantity::lams_static_defect,
@@ -260,11 +254,9 @@ TEST(Chain, EveryStageHasCorrectDerivatives) {
 TEST(Chain, LineLagChangesLamsDefectByPressureRate) {
   // An error of the line leaves pt, so delta-p from LAMS loses the whole of it: d/dtau = -dp/dt.
   const Chain chain = build(memo_model(true));
-  const State<Jet> state = run(chain, dual(chain.parameters()));
+  const State<Jet4> state = run(chain, dual(chain.parameters()));
   EXPECT_NEAR(state[Quantity::lams_static_defect].v[2], 0.8, 1e-3) << "and p in e/p moves a little";
 }
-
-namespace {
 
 // Target of a fit with the laser, zero: delta-p required by the laser minus delta-p of the law.
 template <class S>
@@ -272,8 +264,6 @@ S residual(const Chain& chain, const std::vector<S>& parameters) {
   const State<S> state = run(chain, parameters);
   return state[Quantity::lams_static_defect] - state[Quantity::static_defect];
 }
-
-}  // namespace
 
 TEST_P(EveryEffect, ResidualDerivativeIsCorrect) {
   // Each in the law of the memo with its typical coefficients; the shape of one that does not act here, below
@@ -290,10 +280,10 @@ TEST_P(EveryEffect, ResidualDerivativeIsCorrect) {
   model.effects.erase(std::remove_if(model.effects.begin(), model.effects.end(), same), model.effects.end());
   model.effects.insert(model.effects.begin(), added);
   const Chain chain = build(model);
-  std::vector<Jet> parameters(chain.parameters().begin(), chain.parameters().end());
+  std::vector<Jet4> parameters(chain.parameters().begin(), chain.parameters().end());
   for (std::size_t i = 0; i < info().parameter_count(); ++i)
-    parameters[i] = Jet(chain.parameters()[i], static_cast<int>(i));
-  const Jet result = residual(chain, parameters);
+    parameters[i] = Jet4(chain.parameters()[i], static_cast<int>(i));
+  const Jet4 result = residual(chain, parameters);
   EXPECT_NEAR(result.a, residual(chain, chain.parameters()), 1e-9);
   for (std::size_t i = 0; i < info().parameter_count(); ++i) {
     const auto along = [&](const std::vector<double>& moved) { return residual(chain, moved); };
@@ -309,3 +299,5 @@ TEST_P(EveryEffect, ResidualDerivativeIsCorrect) {
     EXPECT_GT(std::abs(expected * width), 1e-3) << info().parameters[i].name << " moves nothing";
   }
 }
+
+}  // namespace

@@ -21,13 +21,13 @@ namespace {
 constexpr double min_airspeed = 60.0;
 
 /// A C-130 that climbs out, cruises for an hour and a half, and approaches.
-struct Flight {
+struct FlightWithFlaps {
   FlightSamples samples{};
   std::vector<double> attack{};  ///< deg
   std::vector<double> flaps{};   ///< percent
 
   /// @param cruise dynamic pressure, hPa @param flown percent of the flaps at take-off and approach
-  explicit Flight(unsigned seed, double flown, double cruise = 75.0) {
+  explicit FlightWithFlaps(unsigned seed, double flown, double cruise = 75.0) {
     std::mt19937_64 engine(seed);
     std::normal_distribution<double> normal;
     std::vector<double> p;
@@ -59,7 +59,7 @@ struct Flight {
 
 TEST(FlapsByLift, LowAngleForTheLiftMeansExtendedFlaps) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Flight flight(seed, 50.0);
+    const FlightWithFlaps flight(seed, 50.0);
     const std::optional<FlapsByLift> found = flight.found();
     ASSERT_TRUE(found);
     std::size_t wrong = 0;
@@ -73,7 +73,7 @@ TEST(FlapsByLift, LowAngleForTheLiftMeansExtendedFlaps) {
 
 TEST(FlapsByLift, SlowCleanFlightHasNoExtendedFlaps) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    const std::optional<FlapsByLift> found = Flight(seed, 0.0).found();
+    const std::optional<FlapsByLift> found = FlightWithFlaps(seed, 0.0).found();
     ASSERT_TRUE(found);
     EXPECT_EQ(std::count(found->out.begin(), found->out.end(), true), 0) << seed;
     EXPECT_LT(found->deviation, 0.1);
@@ -81,7 +81,7 @@ TEST(FlapsByLift, SlowCleanFlightHasNoExtendedFlaps) {
 }
 
 TEST(FlapsByLift, BriefAngleErrorIsNotExtendedFlaps) {
-  Flight flight(1, 0.0);
+  FlightWithFlaps flight(1, 0.0);
   for (std::size_t i = 3000; i < 3060; ++i) flight.attack[i] -= 2.0;
   const std::optional<FlapsByLift> found = flight.found();
   ASSERT_TRUE(found);
@@ -89,8 +89,8 @@ TEST(FlapsByLift, BriefAngleErrorIsNotExtendedFlaps) {
 }
 
 TEST(FlapsByLift, AreUnknownWithoutCleanWingData) {
-  EXPECT_FALSE(Flight(1, 50.0, 40.0).found()) << "always slower than flaps may be flown";
-  Flight flight(1, 50.0);
+  EXPECT_FALSE(FlightWithFlaps(1, 50.0, 40.0).found()) << "always slower than flaps may be flown";
+  FlightWithFlaps flight(1, 50.0);
   for (double& each : flight.attack) each = 3.0;
   EXPECT_FALSE(flight.found()) << "an angle that is a constant";
 }

@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsNan;
 
-std::shared_ptr<const FlightSamples> flight(const std::string& name, double start) {
+std::shared_ptr<const FlightSamples> flight_named(const std::string& name, double start) {
   FlightSamples samples;
   samples.name = name;
   samples.time = {start, start + 1.0, start + 2.0};
@@ -30,8 +30,8 @@ struct Residual {
 
 TEST(FlightReport, HasShownRecordsAndTheirIntervals) {
   FlightReport report;
-  report.add_flight(flight("rf01", 100.0), {1, 2});
-  report.add_flight(flight("rf02", 200.0), {0});
+  report.add_flight(flight_named("rf01", 100.0), {1, 2});
+  report.add_flight(flight_named("rf02", 200.0), {0});
   EXPECT_THAT(report.report().time, ElementsAre(101.0, 102.0, 200.0));
   EXPECT_THAT(report.report().flight_starts, ElementsAre(0U, 2U));
   EXPECT_THAT(report.report().flight_names, ElementsAre("rf01", "rf02"));
@@ -46,12 +46,12 @@ TEST(FlightReport, HasShownRecordsAndTheirIntervals) {
 
 TEST(FlightReport, SeriesOfAnotherFlightIsNotShown) {
   FlightReport report;
-  report.add_flight(flight("rf01", 100.0), {0, 2});
-  report.add_flight(flight("rf02", 200.0), {0, 2});
+  report.add_flight(flight_named("rf01", 100.0), {0, 2});
+  report.add_flight(flight_named("rf02", 200.0), {0, 2});
   const std::vector<Residual> residuals{{nullptr, {}},
-                                        {flight("rf00", 100.0), {9.0, 9.0, 9.0}},
-                                        {flight("rf02", 900.0), {9.0, 9.0, 9.0}},
-                                        {flight("rf02", 200.0), {1.0, 2.0, 3.0}}};
+                                        {flight_named("rf00", 100.0), {9.0, 9.0, 9.0}},
+                                        {flight_named("rf02", 900.0), {9.0, 9.0, 9.0}},
+                                        {flight_named("rf02", 200.0), {1.0, 2.0, 3.0}}};
   EXPECT_TRUE(report.add_column("residual", "residual", "hPa", residuals, &Residual::values));
   EXPECT_THAT(report.report().columns.back().values, ElementsAre(IsNan(), IsNan(), 1.0, 3.0));
 }
@@ -59,10 +59,10 @@ TEST(FlightReport, SeriesOfAnotherFlightIsNotShown) {
 // Simulated flights in two folders may have equal names and times.
 TEST(FlightReport, FlightsWithEqualNamesAndTimesKeepTheirOrder) {
   FlightReport report;
-  report.add_flight(flight("flight", 100.0), {});
-  report.add_flight(flight("flight", 100.0), {0});
-  const std::vector<Residual> residuals{{flight("flight", 100.0), {1.0, 1.0, 1.0}},
-                                        {flight("flight", 100.0), {2.0, 2.0, 2.0}}};
+  report.add_flight(flight_named("flight", 100.0), {});
+  report.add_flight(flight_named("flight", 100.0), {0});
+  const std::vector<Residual> residuals{{flight_named("flight", 100.0), {1.0, 1.0, 1.0}},
+                                        {flight_named("flight", 100.0), {2.0, 2.0, 2.0}}};
   EXPECT_THAT(report.report().flight_names, ElementsAre("flight"));
   EXPECT_THAT(report.joined(residuals, &Residual::values), ElementsAre(2.0));
 }

@@ -15,13 +15,13 @@ using pcor::internal::gain_between;
 namespace {
 
 constexpr std::size_t records = 720;  // two hours
-constexpr double step = 10.0;         // s
+constexpr double time_step = 10.0;    // s
 constexpr double sure = 1.645;        // standard errors
 
 Estimate gain(const std::vector<double>& before, const std::vector<double>& after) {
   FlightSamples samples;
-  samples.step = step;
-  for (std::size_t i = 0; i < after.size(); ++i) samples.time.push_back(step * static_cast<double>(i));
+  samples.step = time_step;
+  for (std::size_t i = 0; i < after.size(); ++i) samples.time.push_back(time_step * static_cast<double>(i));
   NoiseFloor level;
   level.local_rms.assign(after.size(), 1.0);
   return gain_between(samples, before, after, level);
@@ -30,7 +30,7 @@ Estimate gain(const std::vector<double>& before, const std::vector<double>& afte
 /// Noise of rms 1. @param memory s
 std::vector<double> noise(double memory, std::mt19937_64& engine) {
   std::normal_distribution<double> normal;
-  const double kept = memory > 0.0 ? std::exp(-step / memory) : 0.0;
+  const double kept = memory > 0.0 ? std::exp(-time_step / memory) : 0.0;
   std::vector<double> values;
   double value = normal(engine);
   for (std::size_t i = 0; i < records; ++i) {

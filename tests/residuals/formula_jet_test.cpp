@@ -11,7 +11,7 @@
 namespace pcor {
 namespace {
 
-using Jet = ceres::Jet<double, 3>;
+using Jet3 = ceres::Jet<double, 3>;
 
 constexpr const char* smooth[] = {
     "k * x / 100",
@@ -36,12 +36,12 @@ constexpr double parameters[] = {0.8, 1.3, 0.4};
 
 // Derivatives of a function of `count` numbers against central differences.
 template <class Function>
-void expect_derivatives(const Function& f, const double* at, std::size_t count, double tolerance,
-                        const std::string& text) {
-  std::vector<Jet> dual;
+void expect_jet_derivatives(const Function& f, const double* at, std::size_t count, double tolerance,
+                            const std::string& text) {
+  std::vector<Jet3> dual;
   for (std::size_t i = 0; i < count; ++i) dual.emplace_back(at[i], static_cast<int>(i));
   const auto value = f(dual.data());
-  static_assert(std::is_same_v<decltype(value), const Jet>);
+  static_assert(std::is_same_v<decltype(value), const Jet3>);
   const double exact = f(at);
   EXPECT_NEAR(value.a, exact, 1e-14 * (1.0 + std::abs(exact))) << text;
   for (std::size_t i = 0; i < count; ++i) {
@@ -60,7 +60,8 @@ TEST(FormulaJet, DifferentiatesByParameters) {
     const auto formula = Formula::parse(text, names);
     ASSERT_TRUE(formula) << text;
     for (const auto& point : points)
-      expect_derivatives([&](const auto* p) { return formula->value(point, p); }, parameters, 3, 1e-7, text);
+      expect_jet_derivatives([&](const auto* p) { return formula->value(point, p); }, parameters, 3, 1e-7,
+                             text);
   }
 }
 
@@ -69,15 +70,16 @@ TEST(FormulaJet, DifferentiatesByVariables) {
     const auto formula = Formula::parse(text, names);
     ASSERT_TRUE(formula) << text;
     for (const auto& point : points)
-      expect_derivatives([&](const auto* x) { return formula->value(x, parameters); }, point, 2, 1e-6, text);
+      expect_jet_derivatives([&](const auto* x) { return formula->value(x, parameters); }, point, 2, 1e-6,
+                             text);
   }
 }
 
 TEST(FormulaJet, DifferentiatesByBothAtOnce) {
   const auto formula = Formula::parse("k * x^2", {"k"});
   ASSERT_TRUE(formula);
-  const Jet x(3.0, 0), k(5.0, 1);
-  const Jet value = formula->value(&x, &k);
+  const Jet3 x(3.0, 0), k(5.0, 1);
+  const Jet3 value = formula->value(&x, &k);
   EXPECT_EQ(value.a, 45.0);
   EXPECT_EQ(value.v[0], 30.0);
   EXPECT_EQ(value.v[1], 9.0);
@@ -89,8 +91,8 @@ TEST(FormulaJet, ParameterDerivativesStayFiniteAtSingularity) {
   const auto formula = Formula::parse("k + m*sqrt(max(x, 0)) + n*max(x, 0)^1.5 + m*(x^0.5 - 1)", names);
   ASSERT_TRUE(formula);
   const double x = 0.0;
-  const Jet p[] = {Jet(parameters[0], 0), Jet(parameters[1], 1), Jet(parameters[2], 2)};
-  const Jet value = formula->value(&x, p);
+  const Jet3 p[] = {Jet3(parameters[0], 0), Jet3(parameters[1], 1), Jet3(parameters[2], 2)};
+  const Jet3 value = formula->value(&x, p);
   EXPECT_EQ(value.a, 0.8 - 1.3);
   EXPECT_EQ(value.v[0], 1.0);
   EXPECT_EQ(value.v[1], -1.0);
@@ -101,8 +103,8 @@ TEST(FormulaJet, WithoutParametersDerivativesAreZero) {
   const auto formula = Formula::parse("sqrt(x) + 1", {});
   ASSERT_TRUE(formula);
   const double x = 0.0;
-  const Jet* const none = nullptr;
-  const Jet value = formula->value(&x, none);
+  const Jet3* const none = nullptr;
+  const Jet3 value = formula->value(&x, none);
   EXPECT_EQ(value.a, 1.0);
   EXPECT_EQ(value.v[0], 0.0);
 }
@@ -111,8 +113,8 @@ TEST(FormulaJet, DifferentiatesTheSelectedBranch) {
   const auto formula = Formula::parse("if(x > 0, k*x, m*sqrt(x))", {"k", "m"});
   ASSERT_TRUE(formula);
   for (const double at : {4.0, -4.0}) {
-    const Jet x(at, 2), p[] = {Jet(2.0, 0), Jet(3.0, 1)};
-    const Jet value = formula->value(&x, p);
+    const Jet3 x(at, 2), p[] = {Jet3(2.0, 0), Jet3(3.0, 1)};
+    const Jet3 value = formula->value(&x, p);
     if (at > 0.0) {
       EXPECT_EQ(value.a, 8.0);
       EXPECT_EQ(value.v[0], 4.0);

@@ -20,7 +20,7 @@ pcor::FlightSamples climb() {
   return flight;
 }
 
-std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model) {
+std::vector<double> height_residuals(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model) {
   return made::residuals_of(flight, model, *pcor::height_reference(model));
 }
 
@@ -33,7 +33,7 @@ double pressure_of_height(double pressure) {
 }  // namespace
 
 TEST(Height, ResidualOfTheHydrostaticEquationIsZero) {
-  const std::vector<double> left = residuals(climb(), made::air_model());
+  const std::vector<double> left = height_residuals(climb(), made::air_model());
   for (std::size_t i = 30; i + 30 < left.size(); ++i) ASSERT_NEAR(left[i], 0.0, 1e-9) << i;
   EXPECT_TRUE(std::isnan(left[29])) << "half a minute is needed on either side";
 }
@@ -42,7 +42,7 @@ TEST(Height, DetectsThermometerBiasInEveryClimb) {
   // 300 m in a minute: the warm model takes them for 300 m (1 + 1/260).
   pcor::FlightSamples flight = climb();
   for (double& temperature : flight.model.columns[2].second) temperature += 1.0;
-  const std::vector<double> left = residuals(flight, made::air_model());
+  const std::vector<double> left = height_residuals(flight, made::air_model());
   const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
   for (const std::size_t i : {200U, 900U, 1500U}) {
     const double expected = pressure_of_height(p[i]) * 300.0 / (made::air_temperature + 1.0);
@@ -51,7 +51,7 @@ TEST(Height, DetectsThermometerBiasInEveryClimb) {
 }
 
 TEST(Height, IsInsensitiveToAProportionalPressureDefect) {
-  for (const double value : residuals(climb(), made::air_model({{"static-constant", 0.01}}))) {
+  for (const double value : height_residuals(climb(), made::air_model({{"static-constant", 0.01}}))) {
     if (std::isnan(value)) continue;
     ASSERT_NEAR(value, 0.0, 1e-9);
   }
@@ -60,7 +60,7 @@ TEST(Height, IsInsensitiveToAProportionalPressureDefect) {
 TEST(Height, StaticPressureOffsetGrowsWithHeight) {
   // Subtracting one hPa from every reading makes a climb larger, by p d(1/p) in a minute: rho g 300 m / p.
   const pcor::FlightSamples flight = climb();
-  const std::vector<double> left = residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
+  const std::vector<double> left = height_residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
   const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
   for (const std::size_t i : {200U, 900U, 1500U})
     EXPECT_NEAR(left[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "second order; " << i;
@@ -91,7 +91,7 @@ TEST(Height, GapsAndMissingValuesInterruptTheResidual) {
   pcor::FlightSamples flight = climb();
   flight.model.columns[2].second[900] = std::nan("");
   for (std::size_t i = 1200; i < flight.time.size(); ++i) flight.time[i] += 100.0;
-  const std::vector<double> left = residuals(flight, made::air_model());
+  const std::vector<double> left = height_residuals(flight, made::air_model());
   for (const std::size_t i : {870U, 900U, 930U, 1171U, 1229U}) EXPECT_TRUE(std::isnan(left[i])) << i;
   for (const std::size_t i : {869U, 931U, 1169U, 1230U}) EXPECT_FALSE(std::isnan(left[i])) << i;
 }
@@ -100,5 +100,5 @@ TEST(Height, RequiresATemperature) {
   pcor::FlightSamples flight = climb();
   flight.model.columns.pop_back();
   flight.model.roles.pop_back();
-  EXPECT_THROW(residuals(flight, made::air_model()), pcor::Error);
+  EXPECT_THROW(height_residuals(flight, made::air_model()), pcor::Error);
 }

@@ -18,14 +18,14 @@ using testing::SizeIs;
 namespace {
 
 /// An hour in which speed and height change, and a laser that knows the airspeed.
-struct Flight {
+struct FlightWithLaser {
   std::vector<double> airspeed{};  ///< airspeed derived from the pressures
   std::vector<double> ratio{};
   std::vector<double> beam{};
   std::vector<std::size_t> samples{};
 
   /// @param defect of the pressures, a part of p @param noise of the laser, m/s
-  explicit Flight(double defect, double speed = 220.0, double noise = 0.2) {
+  explicit FlightWithLaser(double defect, double speed = 220.0, double noise = 0.2) {
     std::mt19937_64 engine(1);
     std::normal_distribution<double> normal;
     for (int i = 0; i < 3600; ++i) {
@@ -47,7 +47,7 @@ struct Flight {
 
 TEST(LaserLock, WrongPressuresKeepTheLock) {
   for (const double defect : {-0.03, -0.01, 0.0, 0.01, 0.03}) {
-    const Flight flight(defect);
+    const FlightWithLaser flight(defect);
     double maximum = 0.0;
     for (std::size_t i = 0; i < flight.beam.size(); ++i)
       maximum = std::max(maximum, std::abs(flight.beam[i] - flight.airspeed[i]));
@@ -59,7 +59,7 @@ TEST(LaserLock, WrongPressuresKeepTheLock) {
 }
 
 TEST(LaserLock, RandomBeamSpeedIsUnlocked) {
-  Flight flight(0.02);
+  FlightWithLaser flight(0.02);
   std::mt19937_64 engine(2);
   std::uniform_real_distribution<double> anything(50.0, 400.0);
   for (std::size_t i = 1000; i < 1300; ++i) flight.beam[i] = anything(engine);
@@ -69,16 +69,16 @@ TEST(LaserLock, RandomBeamSpeedIsUnlocked) {
 }
 
 TEST(LaserLock, ShiftedBeamSpeedIsUnlocked) {
-  Flight flight(0.02);
+  FlightWithLaser flight(0.02);
   for (std::size_t i = 2000; i < 3000; ++i) flight.beam[i] += 12.0;
   EXPECT_THAT(flight.unlocked(), SizeIs(1000U));
   EXPECT_THAT(flight.unlocked(), Each(Ge(2000U)));
 }
 
 TEST(LaserLock, IsNotLostInGusts) {
-  Flight flight(0.02);
+  FlightWithLaser flight(0.02);
   // Error caused by a flap or a sideslip, 1.5 hPa at 70 m/s: 1.8 m/s.
-  Flight slow(0.0, 70.0, 0.05);
+  FlightWithLaser slow(0.0, 70.0, 0.05);
   for (std::size_t i = 500; i < 700; ++i) slow.beam[i] += 1.8;
   EXPECT_THAT(slow.unlocked(), IsEmpty());
   // One sample in a hundred is wrong by five standard deviations.
@@ -87,7 +87,7 @@ TEST(LaserLock, IsNotLostInGusts) {
 }
 
 TEST(LaserLock, TooFewSamplesAreNotTested) {
-  Flight flight(0.02);
+  FlightWithLaser flight(0.02);
   flight.samples.resize(20);
   flight.beam[5] += 100.0;
   EXPECT_THAT(flight.unlocked(), IsEmpty());

@@ -2,13 +2,13 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <pcor/base/error.hpp>
 
+#include "support/data.hpp"
 #include "support/error_of.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -16,13 +16,14 @@
 namespace pcor {
 namespace {
 
+using test::data_directory;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
-
-ModelDefinition with_laser() { return read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"); }
-ModelDefinition without_laser() { return read_model(data / "models" / "c130-psfd-eq18.toml"); }
+ModelDefinition with_laser() {
+  return read_model(data_directory / "scenarios" / "models" / "c130-psfd-eq18.toml");
+}
+ModelDefinition without_laser() { return read_model(data_directory / "models" / "c130-psfd-eq18.toml"); }
 
 std::optional<Error> refusal(const std::string& text, const ModelDefinition& model) {
   return test::error_of([&] { read_reference(text, model); });
@@ -31,7 +32,7 @@ std::optional<Error> refusal(const std::string& text, const ModelDefinition& mod
 TEST(Reference, IsReadFromItsName) {
   EXPECT_EQ(read_reference("lams", with_laser())->description(), "LAMS");
   EXPECT_THAT(read_reference("pressure:PS_A", without_laser())->variables(), ElementsAre("PS_A"));
-  const std::string file = (data / "models" / "c130-psfrd-eq18.toml").string();
+  const std::string file = (data_directory / "models" / "c130-psfrd-eq18.toml").string();
   EXPECT_EQ(read_reference("static:" + file, without_laser())->model()->model.name,
             read_model(file).model.name);
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "support/data.hpp"
 #include "support/short_flight.hpp"
 
 using pcor::Mask;
@@ -14,16 +15,15 @@ using pcor::ModelDefinition;
 using pcor::Quantity;
 using pcor::Reference;
 using pcor::Residuals;
+using pcor::test::data_directory;
 using pcor::test::laser_model;
 using pcor::test::short_flight;
 using testing::HasSubstr;
 
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
-
-Residuals residuals(const ModelDefinition& model, const Reference& reference,
-                    const MaskOptions& options = {}) {
+Residuals residuals_of_flight(const ModelDefinition& model, const Reference& reference,
+                              const MaskOptions& options = {}) {
   const auto samples = std::make_shared<const pcor::FlightSamples>(
       pcor::read_samples(pcor::Flight(short_flight()), model, reference, options));
   return Residuals(samples, model, reference, options);
@@ -34,7 +34,9 @@ std::shared_ptr<pcor::FlightSamples> samples_with_laser(const ModelDefinition& m
       pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference()));
 }
 
-ModelDefinition other_system() { return pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"); }
+ModelDefinition other_system() {
+  return pcor::read_model(data_directory / "models" / "c130-psfrd-eq18.toml");
+}
 
 std::vector<std::size_t> used(const Residuals& residuals) {
   std::vector<std::size_t> indices;
@@ -84,14 +86,14 @@ void expect_derivatives(const Residuals& tested) {
 }  // namespace
 
 TEST(Residuals, TrueReferenceLeavesSensorNoise) {
-  const Residuals tested = residuals(laser_model(), *pcor::pressure_reference("TRUE_PS"));
+  const Residuals tested = residuals_of_flight(laser_model(), *pcor::pressure_reference("TRUE_PS"));
   // The model has the law of the truth: the remainder is the noise of PSFD, 0.01 to 0.02 hPa, and a little
   // from the other sensors of the law.
   EXPECT_LT(rms_of(tested, tested.values(tested.parameters().data())), 0.03);
 }
 
 TEST(Residuals, LamsResidualIsLaserMinusModelDefect) {
-  const Residuals tested = residuals(laser_model(), *pcor::lams_reference());
+  const Residuals tested = residuals_of_flight(laser_model(), *pcor::lams_reference());
   const double* const at = tested.parameters().data();
   const std::vector<double> values = tested.values(at);
   const std::vector<double> laser = tested.quantity(Quantity::lams_static_defect, at);
@@ -104,8 +106,8 @@ TEST(Residuals, LamsResidualIsLaserMinusModelDefect) {
 }
 
 TEST(Residuals, ExchangedSystemsGiveOppositeResiduals) {
-  const Residuals forth = residuals(laser_model(), *pcor::static_system_reference(other_system()));
-  const Residuals back = residuals(other_system(), *pcor::static_system_reference(laser_model()));
+  const Residuals forth = residuals_of_flight(laser_model(), *pcor::static_system_reference(other_system()));
+  const Residuals back = residuals_of_flight(other_system(), *pcor::static_system_reference(laser_model()));
   const std::vector<double> a = forth.values(forth.parameters().data());
   const std::vector<double> b = back.values(back.parameters().data());
   for (const std::size_t i : used(forth)) EXPECT_NEAR(a[i], -b[i], 1e-11);
@@ -121,14 +123,14 @@ TEST(Residuals, DerivativesIncludeTheWholeChain) {
   bend.parameter_names = {"k", "c"};
   bend.parameters = {0.3, 2.0};
   model.model.effects.push_back(bend);
-  const Residuals tested = residuals(model, *pcor::lams_reference());
+  const Residuals tested = residuals_of_flight(model, *pcor::lams_reference());
   const std::vector<bool> linear{true, true, true, true, false, false, false, false, false};
   EXPECT_EQ(tested.is_linear(), linear);
   expect_derivatives(tested);
 }
 
 TEST(Residuals, DerivativesIncludeTheReferenceParameters) {
-  const Residuals tested = residuals(laser_model(), *pcor::static_system_reference(other_system()));
+  const Residuals tested = residuals_of_flight(laser_model(), *pcor::static_system_reference(other_system()));
   ASSERT_EQ(tested.parameters().size(), 6U);
   expect_derivatives(tested);
   EXPECT_EQ(tested.parameters()[4], other_system().model.effects[1].parameters[0]);
@@ -169,7 +171,7 @@ TEST(Residuals, SensorResidualsEqualPressureResidualsToFirstOrder) {
 TEST(Masks, EveryUnusedSampleHasAReason) {
   MaskOptions options;
   options.exclude = {pcor::Regime::climb};
-  const Residuals tested = residuals(laser_model(), *pcor::lams_reference(), options);
+  const Residuals tested = residuals_of_flight(laser_model(), *pcor::lams_reference(), options);
   const auto counts = tested.mask_counts();
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::size_t{0}), tested.size());
   EXPECT_GT(counts[static_cast<std::size_t>(Mask::ground)], 0U);

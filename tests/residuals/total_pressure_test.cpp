@@ -14,7 +14,7 @@ namespace {
 using Effects = std::vector<std::pair<std::string, double>>;
 
 /// Two systems in one air; the second has a static defect and independent errors.
-pcor::FlightSamples flight() {
+pcor::FlightSamples two_system_flight() {
   std::vector<double> height;
   std::vector<double> airspeed;
   for (int i = 0; i < 1800; ++i) {
@@ -35,15 +35,16 @@ ModelDefinition other(const Effects& effects = {}) {
   return file;
 }
 
-std::vector<double> residuals(const Effects& own, const Effects& of_other) {
-  return made::residuals_of(flight(), made::air_model(own), *pcor::total_pressure_reference(other(of_other)));
+std::vector<double> total_pressure_residuals(const Effects& own, const Effects& of_other) {
+  return made::residuals_of(two_system_flight(), made::air_model(own),
+                            *pcor::total_pressure_reference(other(of_other)));
 }
 
 }  // namespace
 
 TEST(TotalPressure, IsIndependentOfStaticDefects) {
-  for (const auto& left :
-       {residuals({}, {}), residuals({{"static-constant", 0.01}}, {{"static-qp", 0.05}})}) {
+  for (const auto& left : {total_pressure_residuals({}, {}),
+                           total_pressure_residuals({{"static-constant", 0.01}}, {{"static-qp", 0.05}})}) {
     for (const double value : left) ASSERT_NEAR(value, 0.0, 1e-9);
   }
 }
@@ -51,14 +52,16 @@ TEST(TotalPressure, IsIndependentOfStaticDefects) {
 TEST(TotalPressure, DetectsTheOffsetOfEachTransducer) {
   // The effects take the zero off the reading.
   for (const std::string zero : {"psfd-bias", "qcf-zero"}) {
-    for (const double value : residuals({{zero, 0.5}}, {})) ASSERT_NEAR(value, 0.5, 1e-9) << zero;
-    for (const double value : residuals({}, {{zero, 0.5}})) ASSERT_NEAR(value, -0.5, 1e-9) << zero;
+    for (const double value : total_pressure_residuals({{zero, 0.5}}, {}))
+      ASSERT_NEAR(value, 0.5, 1e-9) << zero;
+    for (const double value : total_pressure_residuals({}, {{zero, 0.5}}))
+      ASSERT_NEAR(value, -0.5, 1e-9) << zero;
   }
 }
 
 TEST(TotalPressure, ResidualDerivativesAreCorrect) {
   // Linear: differences are exact to rounding, 1e-13 of 1000 hPa over the step.
-  EXPECT_LT(made::derivative_error(flight(), made::air_model({{"qcf-gain", 0.01}}),
+  EXPECT_LT(made::derivative_error(two_system_flight(), made::air_model({{"qcf-gain", 0.01}}),
                                    *pcor::total_pressure_reference(other()), 1e-3),
             1e-6);
 }

@@ -22,7 +22,7 @@ constexpr double north_wind = -20.0;  // m/s
 
 /// Half an hour at a height, with a heading for every second.
 template <class Heading>
-pcor::FlightSamples flight(const Heading& heading_at) {
+pcor::FlightSamples flight_with_heading(const Heading& heading_at) {
   pcor::FlightSamples flight =
       made::air_flight(std::vector<double>(1800, 3000.0), std::vector<double>(1800, airspeed));
   std::vector<double> heading;
@@ -46,7 +46,7 @@ double circles(int second) { return std::fmod(2.0 * second, 360.0); }
 double legs(int second) { return second % 600 < 300 ? 40.0 : 220.0; }
 double straight(int) { return 40.0; }
 
-std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model) {
+std::vector<double> wind_residuals(const pcor::FlightSamples& flight, const pcor::ModelDefinition& model) {
   return made::residuals_of(flight, model, *pcor::wind_reference(model));
 }
 
@@ -55,7 +55,8 @@ std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::Mod
 TEST(Wind, ResidualOfASteadyWindIsZero) {
   // On one heading the constant absorbs 1/900 of the wind.
   for (const auto& heading : {circles, legs, straight}) {
-    for (const double value : residuals(flight(heading), made::air_model())) ASSERT_NEAR(value, 0.0, 0.03);
+    for (const double value : wind_residuals(flight_with_heading(heading), made::air_model()))
+      ASSERT_NEAR(value, 0.0, 0.03);
   }
 }
 
@@ -63,33 +64,35 @@ TEST(Wind, EstimatesDeltaPErrorFromHeadingReversals) {
   // 1 hPa too much of delta-p is an airspeed too small by dV/dp; to second order of 1 hPa in 75.
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
   for (const auto& heading : {circles, legs}) {
-    const std::vector<double> left = residuals(flight(heading), model);
+    const std::vector<double> left = wind_residuals(flight_with_heading(heading), model);
     for (const std::size_t i : {500U, 900U, 1290U}) EXPECT_NEAR(left[i], -1.0, 0.05) << i;
   }
 }
 
 TEST(Wind, SingleHeadingGivesNoEstimate) {
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
-  for (const double value : residuals(flight(straight), model)) ASSERT_NEAR(value, 0.0, 0.03);
+  for (const double value : wind_residuals(flight_with_heading(straight), model))
+    ASSERT_NEAR(value, 0.0, 0.03);
 }
 
 TEST(Wind, ResidualDerivativesAreCorrect) {
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 0.001}});
   // Centred differences of a step of 1e-6 of p, some 7e-4 hPa, are right to 1e-5.
-  EXPECT_LT(made::derivative_error(flight(circles), model, *pcor::wind_reference(model), 1e-6), 1e-4);
+  EXPECT_LT(made::derivative_error(flight_with_heading(circles), model, *pcor::wind_reference(model), 1e-6),
+            1e-4);
 }
 
 TEST(Wind, GroundSamplesAreNotUsed) {
-  pcor::FlightSamples parked = flight(legs);
+  pcor::FlightSamples parked = flight_with_heading(legs);
   std::fill_n(parked.motion.airspeed.begin(), 300, 5.0);
-  const std::vector<double> left = residuals(parked, made::air_model());
+  const std::vector<double> left = wind_residuals(parked, made::air_model());
   EXPECT_TRUE(std::isnan(left[299]));
   EXPECT_NEAR(left[300], 0.0, 0.03) << "and what was recorded there does not matter afterwards";
 }
 
 TEST(Wind, FrozenSensorIsRejected) {
   for (const Quantity frozen : {Quantity::heading, Quantity::ground_speed, Quantity::ground_track}) {
-    pcor::FlightSamples samples = flight(circles);
+    pcor::FlightSamples samples = flight_with_heading(circles);
     std::vector<double>& values = *samples.reference.find(frozen);
     std::fill_n(values.begin() + 800, 60, values[800]);
     samples.reference.frozen = {{frozen, 800, 60}};
