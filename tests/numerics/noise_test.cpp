@@ -76,7 +76,7 @@ TEST(RobustDeviation, IsRobustAgainstOutliers) {
 // times that. With memory there are fewer independent samples.
 TEST(NoiseFloor, EqualsTheRmsOfWhiteNoise) {
   const std::vector<double> values = first_order(20000, 0.0, 2);
-  const NoiseFloor floor = pcor::noise_floor(values, seconds(values.size()), 1.0);
+  const NoiseFloor floor = pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0);
   EXPECT_NEAR(floor.rms, 1.0, 0.04);
   EXPECT_NEAR(floor.autocorrelation_time, 1.0, 0.15);
 }
@@ -84,7 +84,7 @@ TEST(NoiseFloor, EqualsTheRmsOfWhiteNoise) {
 TEST(NoiseFloor, EstimatesTheAutocorrelationTime) {
   for (const double memory : {0.5, 0.8}) {
     const std::vector<double> values = first_order(50000, memory, 3);
-    const NoiseFloor floor = pcor::noise_floor(values, seconds(values.size()), 1.0);
+    const NoiseFloor floor = pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0);
     const double expected = (1.0 + memory) / (1.0 - memory);
     EXPECT_NEAR(floor.rms, 1.0, 0.08) << memory;
     EXPECT_NEAR(floor.autocorrelation_time, expected, 0.25 * expected) << memory;
@@ -96,20 +96,20 @@ TEST(NoiseFloor, ExcludesSlowChanges) {
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] += 5.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 1200.0);
   // Over 16 s the sine changes by at most 0.42, which adds 2 % to a difference of variance 2.
-  EXPECT_NEAR(pcor::noise_floor(values, seconds(values.size()), 1.0).rms, 1.0, 0.1);
+  EXPECT_NEAR(pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0).rms, 1.0, 0.1);
 }
 
 TEST(NoiseFloor, ExcludesOutliers) {
   std::vector<double> values = first_order(7200, 0.5, 5);
   for (std::size_t i = 0; i < values.size(); i += 20) values[i] += 30.0;
   // A tenth of the differences has an outlier: the median of |x| moves to the 0.556 quantile, 1.13 times.
-  EXPECT_NEAR(pcor::noise_floor(values, seconds(values.size()), 1.0).rms, 1.13, 0.1);
+  EXPECT_NEAR(pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0).rms, 1.13, 0.1);
 }
 
 TEST(NoiseFloor, FollowsAChangingLevel) {
   std::vector<double> values = first_order(7200, 0.3, 6);
   for (std::size_t i = 3600; i < values.size(); ++i) values[i] *= 4.0;
-  const NoiseFloor floor = pcor::noise_floor(values, seconds(values.size()), 1.0);
+  const NoiseFloor floor = pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0);
   EXPECT_NEAR(floor.rms, std::sqrt(0.5 * (1.0 + 16.0)), 0.25);
   // Brought by 15 % towards the whole, which lies between the two levels: 1 to 4^0.15 = 1.23.
   EXPECT_NEAR(std::accumulate(floor.local_rms.begin(), floor.local_rms.begin() + 3600, 0.0) / 3600.0, 1.12,
@@ -120,12 +120,12 @@ TEST(NoiseFloor, FollowsAChangingLevel) {
 TEST(NoiseFloor, IsEstimatedFromShortSegments) {
   std::vector<double> values = first_order(7200, 0.0, 12);
   for (std::size_t i = 0; i < values.size(); i += 7) values[i] = missing;
-  EXPECT_NEAR(pcor::noise_floor(values, seconds(values.size()), 1.0).rms, 1.0, 0.05);
+  EXPECT_NEAR(pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0).rms, 1.0, 0.05);
 }
 
 TEST(NoiseFloor, TooFewSamplesGiveNan) {
   const std::vector<double> values = first_order(20, 0.0, 7);
-  EXPECT_TRUE(std::isnan(pcor::noise_floor(values, seconds(values.size()), 1.0).rms));
+  EXPECT_TRUE(std::isnan(pcor::noise_floor(values, seconds_from_zero(values.size()), 1.0).rms));
 }
 
 TEST(Autoregression, EstimatesASecondOrderProcess) {
