@@ -1271,14 +1271,14 @@ TEST(Additions, AddToTheMinimumOfThePolicy) {
   model.policy.minimum = 7.0;  // hPa, more than the law gives
   model.additions = {EffectLocation::static_defect};
   const Recorded recorded = full_record();
-  const Chain chain = build(model, recorded);
+  const Chain chain = build_chain(model, recorded);
   std::vector<double> parameters = chain.parameters();
   parameters.back() = 0.25;
-  Sample sample;
-  for (const auto& [quantity, value] : recorded) sample.state[quantity] = value;
-  chain.measure(sample.state, parameters.data(), sample.flags);
-  EXPECT_EQ(chain.static_defect(sample.state, parameters.data(), sample.flags), 7.25);
-  EXPECT_TRUE(sample.flags.has(Quality::minimum_applied));
+  ChainResult added;
+  for (const auto& [quantity, value] : recorded) added.state[quantity] = value;
+  chain.measure(added.state, parameters.data(), added.flags);
+  EXPECT_EQ(chain.static_defect(added.state, parameters.data(), added.flags), 7.25);
+  EXPECT_TRUE(added.flags.has(Quality::minimum_applied));
 }
 
 TEST(Additions, UnusedLocationsNeedAndChangeNoData) {
