@@ -39,7 +39,7 @@ struct Run {
 };
 
 /// @param values of the series at the samples of the run
-/// @param fitted values for the slope, which may be without a part that is known
+/// @param fitted values for the slope, from which a known part may be subtracted
 /// @param per_unit error of delta-p for one unit of the series, hPa
 /// @param min_drift of the series from end to end that its samples do not show as noise
 Trend trend_of(const std::vector<double>& values, const std::vector<double>& fitted, const Flown& flown,

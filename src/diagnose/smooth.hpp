@@ -16,7 +16,7 @@ struct VariableValues {
                  const std::function<std::vector<double>(std::size_t flight)>& values_of);
 
   /// Distinct values, ascending; if there are more than `most`, an incomplete list of more than `most`.
-  std::vector<double> distinct(std::size_t most) const;
+  std::vector<double> distinct(std::size_t max_count) const;
 
   /// Quantiles at equidistant ranks, including minimum and maximum.
   std::vector<double> quantiles(std::size_t number) const;

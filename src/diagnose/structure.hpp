@@ -55,10 +55,11 @@ class StructureTest {
   StructureTest(const FlightPartition& share, const BinnedFlights& binned, const NoiseModel& noise,
                 std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
 
-  /// Tries functions of a variable, also such that bend many times over its range if it is `fine`. Returns
-  /// false and skips a variable that is constant or has no value in more than a tenth of the used records.
-  /// @param variable kept by address in the structures
+  /// Tries functions of a variable; if it is `fine`, also functions that bend many times over its range.
+  /// Returns false and skips a variable that is constant or has no value in more than a tenth of the used
+  /// records. @param variable kept by address in the structures
   bool add(const TestedVariable& variable);
+  bool add(TestedVariable&& variable) = delete;
 
   const std::vector<Structure>& structures() const { return structures_; }
 

@@ -28,7 +28,7 @@ struct FlightCounts {
 
 }  // namespace
 
-std::vector<std::size_t> FitSetup::columns() const {
+std::vector<std::size_t> FitSetup::parameters() const {
   std::vector<std::size_t> all = requested;
   all.insert(all.end(), held.begin(), held.end());
   return all;
@@ -47,7 +47,7 @@ Eigen::VectorXd Reduction::lengths() const {
 FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     : task_(task),
       setup_(std::move(setup)),
-      columns_(setup_.columns()),
+      columns_(setup_.parameters()),
       doubt_(task.model, task.reference, task.options.trust_reference, !task.shares_system),
       prepared_(setup_.values),
       evaluated_(setup_.values),

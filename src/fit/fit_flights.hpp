@@ -30,7 +30,7 @@ struct FitSetup {
   std::vector<Regime> regimes{};
 
   /// The requested parameters, followed by the held ones.
-  std::vector<std::size_t> columns() const;
+  std::vector<std::size_t> parameters() const;
 };
 
 /// Residual parameters: from the fit where included, otherwise from their file.

@@ -89,7 +89,7 @@ class GpsSolver {
       step();
     }
     const Eigen::VectorXd before_last = requested_values();
-    columns_ = flights_.front()->setup().columns();
+    columns_ = flights_.front()->setup().parameters();
     read(false, false);
     step();
     GpsFit fit = result();

@@ -64,8 +64,8 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   const ModelDefinition* const second = task.reference.model();
   const bool has_minimum = limits(task.model) || (second != nullptr && limits(*second));
   std::vector<Omission> result;
-  for (const std::size_t any : requested) {
-    const std::string& effect = task.parameters[any].effect;
+  for (const std::size_t parameter : requested) {
+    const std::string& effect = task.parameters[parameter].effect;
     const auto is_of_effect = [&effect](const Omission& each) { return each.effect == effect; };
     if (std::any_of(result.begin(), result.end(), is_of_effect)) continue;
     std::vector<Eigen::Index> others;

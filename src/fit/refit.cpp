@@ -251,7 +251,7 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
                                  fitted.solution.values[as_index(p)], nan, nan, nan, stage > 0,
                                  fitted.solution.at_bound[p], stage});
   }
-  const std::vector<std::size_t> all = fitted.setup().columns();
+  const std::vector<std::size_t> all = fitted.setup().parameters();
   for (std::size_t a = 0; a < all.size(); ++a) {
     FittedParameter& parameter = result.parameters[all[a]];
     const auto row = covariance.matrix.row(as_index(a));

@@ -263,8 +263,9 @@ class PressureCheck {
     return {role, ratio, "the value expected from " + against, unit_that_fits(unit_of(role), ratio)};
   }
 
-  /// Calls with the pairs of other systems; whether they are as measured, since what was processed may come
-  /// from the pressure that is in doubt; their static pressure; and the ratio of that of the model to it.
+  /// Calls `visit` for each pair of another system: the pair, whether it is as measured (a processed pair may
+  /// depend on the pressure in doubt), its static pressure, and the ratio of the model's static pressure to
+  /// it.
   template <class Visit>
   void each_other_system(Quantity role, const Visit& visit) const {
     for (const auto* pairs : {&family_.measured, &family_.processed}) {

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <random>
@@ -76,6 +77,7 @@ struct Flight {
   std::vector<Eigen::VectorXd> residuals;
   NoiseModel noise;
   std::vector<std::vector<double>> variables;
+  mutable std::deque<TestedVariable> tested{};  ///< structures refer to them
 
   Flight(std::size_t rows, std::size_t count, unsigned seed) {
     std::vector<double> time(rows);
@@ -102,7 +104,7 @@ struct Flight {
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
     StructureTest result(FlightPartition(1), {bins, columns, residuals}, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
-      result.add(one_flight("v" + std::to_string(k), variables[k]));
+      result.add(tested.emplace_back(one_flight("v" + std::to_string(k), variables[k])));
     return result;
   }
 };
@@ -373,7 +375,8 @@ TEST(StructureTest, FindsAnAngle) {
     flight.residuals[0][i] +=
         0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
   StructureTest test(FlightPartition(1), {flight.bins, flight.columns, flight.residuals}, flight.noise, 1);
-  ASSERT_TRUE(test.add(one_flight("heading", flight.variables[2], 360.0)));
+  const TestedVariable heading = one_flight("heading", flight.variables[2], 360.0);
+  ASSERT_TRUE(test.add(heading));
   EXPECT_GT(test.structures()[0].gain, 50.0);
   EXPECT_EQ(test.structures()[0].freedom, 4.0);
   EXPECT_EQ(test.structures()[0].slope, 0.0);
@@ -393,12 +396,15 @@ TEST(StructureTest, ConstantOrMissingVariablesAreSkipped) {
   Flight flight(300, 3, 6);
   StructureTest test(FlightPartition(1), {flight.bins, flight.columns, flight.residuals}, flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
-  EXPECT_FALSE(test.add(one_flight("constant", constant)));
+  const auto add = [&](const char* name, const std::vector<double>& values) {
+    return test.add(flight.tested.emplace_back(one_flight(name, values)));
+  };
+  EXPECT_FALSE(add("constant", constant));
   std::vector<double> gappy = flight.variables[0];
   for (std::size_t i = 100; i < 120; ++i) gappy[i] = missing;
-  EXPECT_TRUE(test.add(one_flight("gappy", gappy)));
+  EXPECT_TRUE(add("gappy", gappy));
   for (std::size_t i = 120; i < 150; ++i) gappy[i] = missing;
-  EXPECT_FALSE(test.add(one_flight("too gappy", gappy)));
+  EXPECT_FALSE(add("too gappy", gappy));
   ASSERT_EQ(test.structures().size(), 1U);
   EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }

@@ -78,9 +78,9 @@ struct Model {
   std::string aircraft{};
   std::vector<ModelEffect> effects{};
   /// Locations with an additional amount, one parameter each after those of the effects, zero: the derivative
-  /// with respect to it is that of any effect at that location. An amount at a location that the model does
-  /// not use has no effect. At the static ports it adds to the law that the policy limits. Not stored in
-  /// model files.
+  /// with respect to it is that of any effect at that location. At the static ports the policy limits the sum
+  /// of the effects, and the amount adds to its minimum. An amount at a location that the model does not use
+  /// has no effect. Not stored in model files.
   std::vector<EffectLocation> additions{};
   LamsMounting lams;
   RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};  ///< default 1, of no real thermometer: 0.95 to 0.99

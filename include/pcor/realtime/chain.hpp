@@ -121,10 +121,10 @@ class Chain : public BoundModel {
     }
     if (watches_flaps_) flags.set(state[Quantity::flaps] > S(flaps_in), Quality::outside_domain);
     if (has_minimum()) {
-      const R added = amount_added_at<R>(EffectLocation::static_defect, parameters);
-      const auto below = defect - added < R(policy_.minimum);
+      const auto below = is_below_minimum(defect, parameters);
       flags.set(below, Quality::minimum_applied);
-      defect = select(below, R(policy_.minimum) + added, defect);
+      defect = select(
+          below, R(policy_.minimum) + amount_added_at<R>(EffectLocation::static_defect, parameters), defect);
     }
     if (is_tapered) {
       const auto slow = q < S(policy_.taper_below);
@@ -278,7 +278,7 @@ class Chain : public BoundModel {
     return location_of(effect) == EffectLocation::static_defect && is_linear(effect, parameter);
   }
 
-  /// Sum of the effects at the static ports, hPa: delta-p before the policy limits it.
+  /// Sum of the effects and of additional amounts at the static ports, hPa: delta-p without the policy.
   template <class S, class P>
   Promoted<S, P> sum_at_ports(const State<S>& state, const P* parameters) const {
     return sum<Promoted<S, P>>(EffectLocation::static_defect, state, parameters);
@@ -287,7 +287,7 @@ class Chain : public BoundModel {
   /// Where the policy raises delta-p to its minimum.
   template <class S, class P>
   auto is_at_minimum(const State<S>& state, const P* parameters) const {
-    return sum_at_ports(state, parameters) < Promoted<S, P>(policy_.minimum);
+    return is_below_minimum(sum_at_ports(state, parameters), parameters);
   }
 
   /// Taper factor of the effects at the static ports: 1 without a taper.
@@ -369,6 +369,12 @@ class Chain : public BoundModel {
   template <class S>
   S radome_angle(const RadomeCalibration& radome, Quantity ratio, const State<S>& state) const {
     return radome.needs_mach() ? radome(state[ratio], state[Quantity::mach]) : radome(state[ratio]);
+  }
+
+  // Whether the effects at the static ports, without additional amounts, are below the minimum.
+  template <class R, class P>
+  auto is_below_minimum(const R& sum, const P* parameters) const {
+    return sum - amount_added_at<R>(EffectLocation::static_defect, parameters) < R(policy_.minimum);
   }
 
   // True if the dynamic pressure exceeds the noise of its sensor.

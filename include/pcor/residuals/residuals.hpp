@@ -66,8 +66,8 @@ class Residuals {
   /// @param requested requested parameters of the derivatives
   /// @param residual a value for each of the samples, hPa
   /// @param derivatives `requested.size()` columns with a value for each of the samples, column by column,
-  /// hPa per unit of the parameter Derivatives are exact: linear ones from the model, others by dual numbers
-  /// through the whole chain.
+  /// hPa per unit of the parameter. Linear ones are exact from the model, others by dual numbers through the
+  /// whole chain.
   void evaluate(const std::vector<std::size_t>& samples, const double* parameters,
                 const std::vector<std::size_t>& requested, double* residual, double* derivatives) const;
 
