@@ -28,9 +28,8 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
 
 /// The model with the coefficients that `refit` finds, without their errors and without any statement on the
 /// flights: for a model of which only the predictions are compared. Arguments and errors as `refit`.
-/// @param surfaces in: priors of the surfaces from a fit of the same model and references, whose inflation is
-/// kept and whose sizes are found anew; empty: the default priors. Out: the priors of this fit; unchanged if
-/// a reference is by GPS
+/// @param surfaces in: initial priors of the surfaces, from a fit of the same model and references; empty:
+/// the default sizes. Out: the priors of this fit; unchanged if a reference is by GPS
 ModelDefinition fitted_coefficients(const FlightSet& flights, const ModelDefinition& model,
                                     const References& references, const RefitOptions& options,
                                     std::vector<SurfaceRoughness>& surfaces);

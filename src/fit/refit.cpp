@@ -144,30 +144,25 @@ Fitted at_start(const FitTask& task) {
   return fitted;
 }
 
-/// The sizes of surfaces and their coefficients, in turn. The noise hardly changes after three rounds. The
-/// coefficients are always those of the last sizes.
-/// @param keeps_inflation the inflation is that of an earlier fit, so the noise is not measured
-void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution, bool keeps_inflation) {
+/// The sizes of surfaces and their coefficients, in turn. The noise hardly changes after some rounds. The
+/// coefficients are always those of the last sizes. @param noise_rounds in which the noise is measured
+void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution, int noise_rounds) {
   constexpr int max_rounds = 6;
-  constexpr int noise_rounds = 3;
   for (int round = 0; round < max_rounds; ++round) {
-    const InflationFrom noise = keeps_inflation        ? InflationFrom::none
-                                : round < noise_rounds ? InflationFrom::measured
-                                                       : InflationFrom::last;
-    const bool has_changed = find_roughness(flights, solution, task.surfaces, noise);
+    const bool has_changed = find_roughness(flights, solution, task.surfaces, round < noise_rounds);
     solution = solve(flights, std::move(solution), flights.setup().requested);
     if (!has_changed) break;
   }
 }
 
-Fitted fit_in_stages(FitTask& task, bool keeps_inflation = false) {
+Fitted fit_in_stages(FitTask& task, int noise_rounds = 3) {
   Fitted fitted = at_start(task);
   Solution& solution = fitted.solution;
   constexpr int max_masks = 3;
   for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
     solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
-    if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution, keeps_inflation);
+    if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution, noise_rounds);
     // The masks are those of the solution, so that the start does not decide.
     if (!fitted.flights->masks_change_at(solution.values)) break;
   }
@@ -426,9 +421,9 @@ ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const Mo
     return refit(flights, model, references, options).model;
   require_sense(flights, model, references, options);
   FitTask task = fit_task(model, references, options, flights);
-  const bool is_repeated = !surfaces.empty();
-  if (is_repeated) task.surfaces = surfaces;
-  const Fitted fitted = fit_in_stages(task, is_repeated);
+  if (!surfaces.empty()) task.surfaces = surfaces;
+  // Priors from another fit are close to the solution.
+  const Fitted fitted = surfaces.empty() ? fit_in_stages(task) : fit_in_stages(task, 1);
   surfaces = task.surfaces;
   ModelDefinition result = model;
   Eigen::Index p = 0;

@@ -77,9 +77,9 @@ Eigen::MatrixXd second_differences(const Surface& surface) {
 }
 
 bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces,
-                    InflationFrom noise) {
+                    bool has_new_noise) {
   const std::vector<std::size_t>& requested = flights.setup().requested;
-  if (noise == InflationFrom::measured) flights.measure_noise(solution.values);
+  if (has_new_noise) flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
   const Eigen::Index count = as_index(requested.size());
   const auto all = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
@@ -87,14 +87,11 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     const Eigen::MatrixXd own = side_by_side(rows.columns.leftCols(count), rows.innovations);
     return Eigen::MatrixXd(own.transpose() * own);
   });
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  if (noise != InflationFrom::none) {
-    covariance = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
-      const Eigen::MatrixXd weighted =
-          flights.weighted(flight, flights.rows(flight, solution.values, {}).columns.leftCols(count));
-      return noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0);
-    });
-  }
+  const auto noise = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    const Eigen::MatrixXd weighted =
+        flights.weighted(flight, flights.rows(flight, solution.values, {}).columns.leftCols(count));
+    return noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0);
+  });
   bool changed = false;
   for (SurfaceRoughness& surface : surfaces) {
     std::vector<Eigen::Index> own;
@@ -105,22 +102,19 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
       coefficients.push_back(as_index(requested[k] - surface.first));
     }
     if (own.empty() || !all.allFinite()) continue;
-    Determined found = determined(all, covariance, prior_rows(flights.task(), requested), unit, own);
+    Determined found = determined(all, noise, prior_rows(flights.task(), requested), unit, own);
     // About zero, not about the solution.
     found.right -= found.information * solution.values(requested)(own);
     const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
       return rows(Eigen::all, coefficients).transpose() * rows(Eigen::all, coefficients);
     };
-    if (noise != InflationFrom::none) {
-      const Eigen::LLT<Eigen::MatrixXd> now(found.information +
-                                            unit * surface.inflation * precision(surface.rows()));
-      const double inflation =
-          std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
-      changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
-      // New noise is that of the residuals of the previous round: half steps make both converge.
-      surface.inflation =
-          noise == InflationFrom::measured ? std::sqrt(inflation * surface.inflation) : inflation;
-    }
+    const Eigen::LLT<Eigen::MatrixXd> now(found.information +
+                                          unit * surface.inflation * precision(surface.rows()));
+    const double inflation =
+        std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
+    changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
+    // New noise is that of the residuals of the previous round: half steps make both converge.
+    surface.inflation = has_new_noise ? std::sqrt(inflation * surface.inflation) : inflation;
     const double weight = 1.0 / (surface.inflation * unit);
     const SurfaceRoughness before = surface;
     const Eigen::MatrixXd of_differences = precision(surface.differences);

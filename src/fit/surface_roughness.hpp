@@ -37,18 +37,12 @@ struct SurfaceRoughness {
 /// Rows of second differences along both axes of a surface: zero for a plane.
 Eigen::MatrixXd second_differences(const Surface& surface);
 
-/// Noise from which the inflation of a surface is computed.
-enum class InflationFrom {
-  none,      ///< the inflation is kept
-  last,      ///< the noise of the last measurement
-  measured,  ///< the noise is measured at the solution
-};
-
 /// Finds both sizes of each surface by the marginal likelihood of the residuals at a solution, all others and
 /// the law fitted too. The likelihood is that of least squares over the inflation, so that memory and drift
 /// of the noise do not count as structure (Pauli, Racugno and Ventura 2011, Statistica Sinica 21, 149).
 /// False where size and inflation of all hardly changed.
+/// @param has_new_noise the noise is measured at the solution; otherwise it is that of the last measurement
 bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<SurfaceRoughness>& surfaces,
-                    InflationFrom noise);
+                    bool has_new_noise);
 
 }  // namespace pcor::internal

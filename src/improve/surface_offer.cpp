@@ -31,7 +31,8 @@ Exclusion block_of(const TrialFlight& flight, std::size_t block) {
 
 /// The residuals without and with the surface on five blocks, each with coefficients of the other four.
 /// @param outline the samples of all blocks
-/// @param surfaces priors of the second model in a fit to all blocks, whose inflation is that of each block
+/// @param surfaces priors of the second model in a fit to all blocks, from which the search for those of each
+/// block starts
 TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
                               const RefitOptions& options, const std::vector<TrialFlight>& outline,
                               const std::vector<SurfaceRoughness>& surfaces) {
