@@ -43,7 +43,7 @@ VariableValues::VariableValues(const FlightPartition& share,
 
 std::vector<double> VariableValues::distinct(std::size_t max_count) const {
   std::set<double> found;
-  for (std::size_t i = 0; i < values.size() && found.size() <= most; ++i) found.insert(values[i]);
+  for (std::size_t i = 0; i < values.size() && found.size() <= max_count; ++i) found.insert(values[i]);
   return {found.begin(), found.end()};
 }
 

@@ -15,7 +15,8 @@ struct VariableValues {
   VariableValues(const FlightPartition& share,
                  const std::function<std::vector<double>(std::size_t flight)>& values_of);
 
-  /// Distinct values, ascending; if there are more than `most`, an incomplete list of more than `most`.
+  /// Distinct values, ascending; if there are more than `max_count`, an incomplete list of more than
+  /// `max_count`.
   std::vector<double> distinct(std::size_t max_count) const;
 
   /// Quantiles at equidistant ranks, including minimum and maximum.
