@@ -194,10 +194,12 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "error. The search gives less weight to slow changes, so its chi2 differs. ";
   const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
   if (std::any_of(panel.coefficients.begin(), own_end,
-                  [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); }))
-    panel.caption +=
-        " The coefficients of the reference system keep their input values here, so the held-out rms differs "
-        "from that of pcor improve, which fits them.";
+                  [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); })) {
+    panel.caption += " The coefficients of the reference system keep their input values.";
+    panel.details +=
+        "pcor diagnose and pcor improve fit the coefficients of the reference system, so their chi2 and "
+        "held-out rms differ: an effect may explain more with other coefficients of that system. ";
+  }
   panel.details +=
       "The numbers use all samples; pictures and tables of a flight of more than 16,000 samples interpolate "
       "derivatives between regular samples.";

@@ -168,7 +168,9 @@ std::string info(const std::vector<std::pair<std::string, std::string>>& info) {
 }
 
 std::string summary(const std::vector<std::string>& sentences) {
-  constexpr std::size_t shown = 2;
+  constexpr std::size_t max_letters = 320;  // about four lines: the first picture stays on the first screen
+  const bool are_short = sentences.size() > 1 && sentences[0].size() + sentences[1].size() <= max_letters;
+  const std::size_t shown = are_short ? 2 : 1;
   std::string first, more;
   for (std::size_t i = 0; i < sentences.size(); ++i)
     (i < shown ? first : more) += element("li", sentences[i]);
