@@ -18,7 +18,7 @@ constexpr double min_thermometer_error = 0.3;
 /// A line with a larger error at 0 degC, K, is not reported.
 constexpr double max_useful_error = 1.0;
 
-/// Finds the layers of a flight. @return the reason if it has none, otherwise an empty text
+/// Finds the layers of a flight. @return the reason if the flight has no layer, otherwise an empty text
 std::string find_layers_of(const FlightAir& air, FlightLayers& found) {
   if (air.temperature.empty())
     return "no thermometer is known; give a model (-m) with recovery_temperature "

@@ -22,7 +22,7 @@ struct VariableValues {
   /// Quantiles at equidistant ranks, including minimum and maximum.
   std::vector<double> quantiles(std::size_t number) const;
 
-  std::vector<double> values{};  ///< in the order of the flights
+  std::vector<double> values{};  ///< all flights, in their order
   std::size_t missing = 0;
   // The following are zero without a value.
   double minimum = 0.0;

@@ -397,7 +397,7 @@ class ScoreSums {
   const std::vector<std::string> doubts_;
   // For each block of bins: derivatives of the scores by all parameters, and the scores.
   std::vector<Eigen::MatrixXd> blocks_;
-  Eigen::MatrixXd covariance_;  // of the scores by the noise and by the zeros of the flights
+  Eigen::MatrixXd covariance_;  // scores by the noise and by the zeros of the flights
   Eigen::MatrixXd by_misfit_;
   Eigen::MatrixXd by_doubt_;
   std::vector<Eigen::VectorXd> zeros_;            // one for each flight

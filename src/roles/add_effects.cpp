@@ -22,7 +22,7 @@ using namespace internal;
 namespace {
 
 /// The first of the usual names among `variables`, be it with the suffix of an instrument as in PLWCD_LWOI;
-/// empty if there is none.
+/// empty if no variable has such a name.
 std::string usual_variable(const std::vector<std::string>& usual, const std::vector<std::string>& variables) {
   if (variables.empty() && !usual.empty()) return usual.front();
   for (const char* const suffix : {"", "_"}) {

@@ -273,7 +273,7 @@ TEST(Columns, FixedCoefficientsHaveNoColumn) {
   EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
 }
 
-// Such columns were zero, and the effect on the other system was no alias of that on this one.
+// Such columns were zero, so the diagnosis did not see that the effects of the two systems are aliases.
 TEST(Columns, EffectsAddToTheMinimumOfTheLaw) {
   const Made without;
   Made made;
