@@ -423,7 +423,7 @@ ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const Mo
   FitTask task = fit_task(model, references, options, flights);
   if (!surfaces.empty()) task.surfaces = surfaces;
   // Priors from another fit are close to the solution.
-  const Fitted fitted = surfaces.empty() ? fit_in_stages(task) : fit_in_stages(task, 1);
+  const Fitted fitted = surfaces.empty() ? fit_in_stages(task) : fit_in_stages(task, 2);
   surfaces = task.surfaces;
   ModelDefinition result = model;
   Eigen::Index p = 0;

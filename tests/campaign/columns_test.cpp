@@ -277,13 +277,19 @@ TEST(Columns, FixedCoefficientsHaveNoColumn) {
 TEST(Columns, EffectsAddToTheMinimumOfTheLaw) {
   const Made without;
   Made made;
-  made.model.model.policy.minimum = 5.0;  // hPa, more than the law gives
+  made.model.model.policy.minimum = 3.0;  // hPa, more than the law gives at many samples
   made.set = find_candidates(made.model, {}, {}, {made.reference});
   const FlightColumns columns = find_columns(made.samples, made.model, made.set, 0, {}, 1.0);
-  EXPECT_EQ(columns.base.cwiseAbs().maxCoeff(), 0.0F);
-  const Eigen::MatrixXf expected = columns_of(without.columns, without.set, "static-alpha-quad");
-  // The air is that of another delta-p: 5 hPa of 70 hPa.
-  EXPECT_TRUE(columns_of(columns, made.set, "static-alpha-quad").isApprox(expected, 0.1F));
+  const Eigen::VectorXf expected = columns_of(without.columns, without.set, "static-alpha-quad").col(0);
+  const Eigen::VectorXf found = columns_of(columns, made.set, "static-alpha-quad").col(0);
+  std::size_t at_minimum = 0;
+  for (Eigen::Index i = 0; i < found.size(); ++i) {
+    if (columns.base.row(i).cwiseAbs().maxCoeff() > 0.0F) continue;
+    ++at_minimum;
+    // The air is that of another delta-p: up to 3 hPa of at least 50 hPa.
+    EXPECT_NEAR(found[i], expected[i], 0.1F * std::abs(expected[i])) << i;
+  }
+  EXPECT_GT(at_minimum, 50U);
 }
 
 // Otherwise laser noise would be explained by columns that contain it.
