@@ -376,7 +376,7 @@ function drawBars(pen, width, height, item, samples, theme) {
   const bars = item.bars.map(({label, value, error}) => ({label, value: value ?? NaN, error: error ?? 0}));
   const finite = bars.filter(({value}) => Number.isFinite(value));
   const longest = Math.max(...bars.map(({label}) => textWidth(label, fontSize)));
-  const left = Math.min(longest + 22, 0.42 * width);
+  const left = Math.min(longest + 22, 0.55 * width);
   const box = plotBox(width, height, {left, right: 62, top: 8});
   const range = limits(finite.flatMap(({value, error}) => [value - error, value + error]), [0]);
   if (finite.every(({value, error}) => value - error >= 0)) range.from = 0;
