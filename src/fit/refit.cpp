@@ -144,10 +144,11 @@ Fitted at_start(const FitTask& task) {
   return fitted;
 }
 
-/// The sizes of surfaces and their coefficients, in turn. The noise hardly changes after some rounds. The
-/// coefficients are always those of the last sizes. @param noise_rounds in which the noise is measured
-void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution, int noise_rounds) {
+/// The sizes of surfaces and their coefficients, in turn. The noise hardly changes after three rounds. The
+/// coefficients are always those of the last sizes.
+void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   constexpr int max_rounds = 6;
+  constexpr int noise_rounds = 3;
   for (int round = 0; round < max_rounds; ++round) {
     const bool has_changed = find_roughness(flights, solution, task.surfaces, round < noise_rounds);
     solution = solve(flights, std::move(solution), flights.setup().requested);
@@ -155,14 +156,14 @@ void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution, int no
   }
 }
 
-Fitted fit_in_stages(FitTask& task, int noise_rounds = 3) {
+Fitted fit_in_stages(FitTask& task) {
   Fitted fitted = at_start(task);
   Solution& solution = fitted.solution;
   constexpr int max_masks = 3;
   for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
     solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
-    if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution, noise_rounds);
+    if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
     // The masks are those of the solution, so that the start does not decide.
     if (!fitted.flights->masks_change_at(solution.values)) break;
   }
@@ -422,8 +423,7 @@ ModelDefinition internal::fitted_coefficients(const FlightSet& flights, const Mo
   require_sense(flights, model, references, options);
   FitTask task = fit_task(model, references, options, flights);
   if (!surfaces.empty()) task.surfaces = surfaces;
-  // Priors from another fit are close to the solution.
-  const Fitted fitted = surfaces.empty() ? fit_in_stages(task) : fit_in_stages(task, 2);
+  const Fitted fitted = fit_in_stages(task);
   surfaces = task.surfaces;
   ModelDefinition result = model;
   Eigen::Index p = 0;

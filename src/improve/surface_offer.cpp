@@ -31,12 +31,12 @@ Exclusion block_of(const TrialFlight& flight, std::size_t block) {
 
 /// The residuals without and with the surface on five blocks, each with coefficients of the other four.
 /// @param outline the samples of all blocks
-/// @param surfaces priors of the second model in a fit to all blocks, from which the search for those of each
-/// block starts
+/// @param surfaces the priors in a fit to all blocks, where the search for those of each block starts
 TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, const References& references,
                               const RefitOptions& options, const std::vector<TrialFlight>& outline,
-                              const std::vector<SurfaceRoughness>& surfaces) {
+                              std::vector<SurfaceRoughness> surfaces) {
   std::vector<TrialModel> trials;
+  std::array<std::vector<SurfaceRoughness>, 2> priors{{{}, std::move(surfaces)}};
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
     without_block.alike = models[0].alike;
@@ -46,10 +46,8 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
         without_block.mask.intervals->exclude.push_back(block_of(flight, block));
     }
     for (std::size_t k = 0; k < models.size(); ++k) {
-      std::vector<SurfaceRoughness> priors;
-      if (k == 1) priors = surfaces;
-      trials.push_back(
-          {fitted_coefficients(flights, models[k].file, references, without_block, priors), models[k].alike});
+      trials.push_back({fitted_coefficients(flights, models[k].file, references, without_block, priors[k]),
+                        models[k].alike});
     }
   }
   std::vector<TrialFlight> tried = try_models(flights, trials, references, options);
@@ -106,7 +104,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
   offer.compared = comparison_of(tried, 0, 1, false);
   if (!(offer.compared.rms_after <= unnamed_limit * offer.compared.rms_before)) return offer;
   offer.compared_on = "five held-out blocks with outliers";
-  offer.compared = out_of_blocks(flights, models, references, options, tried, surfaces);
+  offer.compared = out_of_blocks(flights, models, references, options, tried, std::move(surfaces));
   return offer;
 }
 
