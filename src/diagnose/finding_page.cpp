@@ -165,8 +165,9 @@ std::string finding_summary(const Finding& finding) {
   }
   if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
     all.push_back(fmt::format("{} more", more));
-  return text + fmt::format(" These flights cannot distinguish the effect (probability {}) from {}.",
-                            percent(finding.probability), join_list(all));
+  text += fmt::format(" These flights cannot distinguish the effect (probability {}) from {}.",
+                      percent(finding.probability), join_list(all));
+  return finding.advice.manoeuvre.empty() ? text : text + " " + sentence(finding.advice.sentence);
 }
 
 std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
