@@ -304,8 +304,8 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
 
   record.way = way_known(air);
   const std::vector<Eigen::Vector2d> way = way_flown(air);
-  PointIterator begin = points.begin();
-  for (PointIterator point = begin; point != points.end(); ++point) {
+  auto begin = points.cbegin();
+  for (auto point = begin; point != points.cend(); ++point) {
     const bool is_full =
         air.time()[point->sample] - air.time()[begin->sample] >= block_length - 0.5 * air.step();
     if (point != begin && (point->starts_segment || is_full)) {
