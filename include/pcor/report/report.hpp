@@ -293,8 +293,9 @@ struct NextStep {
 struct Report {
   std::string title;  ///< the result in one sentence
   std::string subtitle;
-  std::vector<std::string> summary;  ///< sentences; the page folds those after the second
-  std::vector<NextStep> next;        ///< advised steps, if any
+  /// Sentences; the page folds those after the first, or after the second if both are short.
+  std::vector<std::string> summary;
+  std::vector<NextStep> next;  ///< advised steps, if any
   std::vector<std::pair<std::string, std::string>>
       info;                                ///< name and value, e.g. "Model"; folded on the page
   std::vector<double> time;                ///< sample times, s since 1970 UTC
