@@ -268,9 +268,9 @@ void FlightSet::require_each_once() const {
 }
 
 void FlightSet::require_unchanged() const {
-  share_->of_each_flight<bool>([this](std::size_t number) {
+  share_->of_each_flight<int>([this](std::size_t number) {
     entries_[number]->require_unchanged();
-    return true;
+    return 0;
   });
 }
 

@@ -12,6 +12,7 @@
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/packed.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -31,6 +32,19 @@ constexpr double block_time = 60.0;  // s
 /// A flight in bins, for the members of a team that do not own it: derivatives or other columns, and the
 /// residual last.
 using BinnedRows = std::pair<Binning, Eigen::MatrixXd>;
+
+/// Columns that are not zero in all flights: a reference is insensitive to some coefficients.
+std::vector<Eigen::Index> columns_seen(const std::vector<BinnedRows>& flights) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k + 1 < flights.front().second.cols(); ++k) {
+    if (std::any_of(flights.begin(), flights.end(),
+                    [k](const BinnedRows& flight) { return !flight.second.col(k).isZero(0.0); }))
+      seen.push_back(k);
+  }
+  return seen;
+}
+
+std::size_t threads_of(const FlightPartition& share) { return Workers(share.comm(), 0).threads; }
 
 /// Rows and minutes of a flight.
 using RowCount = std::pair<std::size_t, Eigen::Index>;
@@ -66,9 +80,10 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
     std::vector<Binning> bins;
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> left;
+    const std::vector<Eigen::Index> seen = columns_seen(rows_of);
     for (const auto& [own, rows] : rows_of) {
       bins.push_back(own);
-      columns.emplace_back(rows.leftCols(rows.cols() - 1));
+      columns.emplace_back(rows(Eigen::all, seen));
       left.emplace_back(rows.rightCols(1));
     }
     NoiseModel shared = find(bins, columns, left);
@@ -161,7 +176,7 @@ Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(s
 
 void sum_up(WhitenedSystem& scores) {
   scores.information = scores.share.sum_of_each_flight<Eigen::MatrixXd>(
-      [&](std::size_t f) { return products_of(scores.rows[f]); });
+      [&](std::size_t f) { return products_of(scores.rows[f]); }, threads_of(scores.share));
 }
 
 void marginalize(WhitenedSystem& system, Eigen::Index count) {
@@ -227,15 +242,18 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   scores.bin.resize(bins.size());
   scores.block.resize(bins.size());
   const auto is_white = [&white](std::size_t f) { return !white.empty() && white[f].rows.size() > 0; };
-  const auto counts = share.of_each_flight<RowCount>([&](std::size_t f) {
-    if (is_white(f)) {
-      scores.rows[f] = white[f].rows;
-      scores.bin[f] = white[f].bin;
-    } else {
-      scores.rows[f] = whitened(side_by_side(columns[f], residuals[f]), bins[f], noise[f], 0);
-    }
-    return RowCount{static_cast<std::size_t>(scores.rows[f].rows()), find_blocks(bins[f], scores.block[f])};
-  });
+  const auto counts = share.of_each_flight<RowCount>(
+      [&](std::size_t f) {
+        if (is_white(f)) {
+          scores.rows[f] = white[f].rows;
+          scores.bin[f] = white[f].bin;
+        } else {
+          scores.rows[f] = whitened(side_by_side(columns[f], residuals[f]), bins[f], noise[f], 0);
+        }
+        return RowCount{static_cast<std::size_t>(scores.rows[f].rows()),
+                        find_blocks(bins[f], scores.block[f])};
+      },
+      0, threads_of(share));
   for (std::size_t f = 0; f < counts.size(); ++f) {
     for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
     const auto& [rows, blocks] = counts[f];
@@ -245,13 +263,15 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   sum_up(scores);
   scores.plain = scores.information;
   if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
-    scores.plain = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-      NoiseModel still = noise[f];
-      still.slow = {};
-      return products_of(noise[f].drifts() && !is_white(f)
-                             ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
-                             : scores.rows[f]);
-    });
+    scores.plain = share.sum_of_each_flight<Eigen::MatrixXd>(
+        [&](std::size_t f) {
+          NoiseModel still = noise[f];
+          still.slow = {};
+          return products_of(noise[f].drifts() && !is_white(f)
+                                 ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
+                                 : scores.rows[f]);
+        },
+        threads_of(share));
   }
   return scores;
 }

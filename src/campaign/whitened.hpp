@@ -25,6 +25,7 @@ struct BinnedFit {
   std::uint64_t state = 0;
 };
 
+/// @param columns those that are not zero in all flights
 using FindNoise =
     std::function<NoiseModel(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& left)>;

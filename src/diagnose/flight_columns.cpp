@@ -143,16 +143,16 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
 }
 
 void leave_out_empty(TeamColumns& columns) {
-  const auto is_left = columns.share.of_each_flight<bool>([&](std::size_t number) {
+  const auto is_left = columns.share.of_each_flight<int>([&](std::size_t number) {
     const FlightColumns& flight = columns.flights[number];
     const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
-    return has_value(flight.given) &&
-           (flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(min_samples));
+    const bool is_long = flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(min_samples);
+    return has_value(flight.given) && is_long ? 1 : 0;
   });
   std::vector<std::size_t> left;
   std::vector<FlightColumns> flights;
   for (std::size_t number = 0; number < is_left.size(); ++number) {
-    if (!is_left[number]) continue;
+    if (is_left[number] == 0) continue;
     left.push_back(number);
     flights.push_back(std::move(columns.flights[number]));
   }

@@ -15,6 +15,7 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -88,7 +89,10 @@ Eigen::MatrixXd DrawnResiduals::products_with(const Eigen::MatrixXd& columns) co
 StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& binned,
                              const NoiseModel& noise, std::uint64_t seed,
                              const std::vector<Eigen::MatrixXd>& aside)
-    : share_(share), bins_(binned.bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
+    : share_(share),
+      threads_(Workers(share.comm(), 0).threads),
+      bins_(binned.bins),
+      largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
   const std::vector<Eigen::VectorXd>& residuals = binned.residuals;
   std::vector<Eigen::MatrixXd> with_aside = binned.columns;
@@ -114,10 +118,12 @@ StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& 
     const std::vector<Eigen::VectorXd> noise_alone =
         aside.empty() ? flights.left : left_of(find_scores(share, bins_, with_aside, residuals, left));
     flights.drawn.resize(bins_.size());
-    flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-      flights.drawn[f] = drawn(noise_alone[f], bins_[f], seed + f, seed);
-      return flights.drawn[f].products_with(flights.model[f]);
-    });
+    flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>(
+        [&](std::size_t f) {
+          flights.drawn[f] = drawn(noise_alone[f], bins_[f], seed + f, seed);
+          return flights.drawn[f].products_with(flights.model[f]);
+        },
+        threads_);
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
 }
@@ -219,8 +225,8 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
 void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
   if (smooth.columns() == 0) return;
   const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, variable);
-  const auto sums =
-      share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) { return products(f, columns[f]); });
+  const auto sums = share_.sum_of_each_flight<Eigen::MatrixXd>(
+      [&](std::size_t f) { return products(f, columns[f]); }, threads_);
   const Eigen::Index width = sums.cols() / as_index(whitened_.size());
   Structure structure;
   structure.variable = &variable;

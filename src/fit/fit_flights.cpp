@@ -226,7 +226,8 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       part.factor = factor.factor();
       return part;
     };
-    for (const Reduction& part : share().of_each_flight<Reduction>(reduced, digest_of(packed(parameters)))) {
+    for (const Reduction& part :
+         share().of_each_flight<Reduction>(reduced, digest_of(packed(parameters)), task_.threads())) {
       sum.add(part.factor);
       whole.absorbed += part.absorbed;
       whole.cost += part.cost;

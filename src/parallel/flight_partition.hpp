@@ -11,6 +11,7 @@
 #include <future>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <typeinfo>
 #include <utility>
 #include <vector>
@@ -128,46 +129,39 @@ class FlightPartition {
     });
   }
 
-  /// Gathers parts of flights one after another. @param make returns the part of a flight
+  /// Gathers parts of flights. @param make returns the part of a flight; it is called by up to `threads`
+  /// threads
   template <class Part, class Make>
-  std::vector<Part> of_each_flight(const Make& make, std::uint64_t state = 0) const {
+  std::vector<Part> of_each_flight(const Make& make, std::uint64_t state = 0, std::size_t threads = 1) const {
+    static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
     return gather_flights<Part>(
         [&](std::vector<Part>& parts) {
-          for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-            if (is_local(flight)) parts[flight] = part_of(make, flight);
-          }
+          visit(
+              threads, [](std::size_t) { return true; }, [](std::size_t flight) { return flight; },
+              [&](std::size_t flight, std::size_t) { parts[flight] = make(flight); });
         },
         state);
   }
 
   /// The sum of the parts of all flights, added in their order, on every member: some at a time are made and
-  /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=
+  /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=; it
+  /// is called by up to `threads` threads, a number that is equal on all ranks
   template <class Part, class Make>
-  Part sum_of_each_flight(const Make& make) const {
-    Part sum{};
-    const auto add = [&sum](std::size_t flight, Part part) {
-      if (flight == 0)
-        sum = std::move(part);
-      else
-        sum += part;
-    };
-    if (comm_->size() == 1) {
-      for (std::size_t flight = 0; flight < flights(); ++flight) add(flight, make(flight));
-      return sum;
-    }
+  Part sum_of_each_flight(const Make& make, std::size_t threads = 1) const {
     // Few enough to be kept in memory, enough that ranks with unequal work rarely wait.
     constexpr std::size_t of_each = 4, enough = 64;
-    const std::size_t members = comm_->size();
-    const std::size_t at_a_time = std::min(of_each * members, std::max(enough, members));
+    const std::size_t workers = comm_->size() * threads;
+    const std::size_t at_a_time = std::min(of_each * workers, std::max(enough, workers));
+    Part sum{};
     for (std::size_t first = 0; first < flights(); first += at_a_time) {
       const FlightPartition some = part(first, std::min(at_a_time, flights() - first));
-      std::vector<Part> own;
-      some.attempt([&] {
-        for (std::size_t k = 0; k < some.flights(); ++k) {
-          if (some.is_local(k)) own.push_back(part_of(make, first + k));
-        }
-      });
-      some.gather(std::move(own), 0, [&](std::size_t k, Part part) { add(first + k, std::move(part)); });
+      auto parts = some.of_each_flight<Part>([&](std::size_t k) { return make(first + k); }, 0, threads);
+      for (Part& each : parts) {
+        if (first == 0 && &each == &parts.front())
+          sum = std::move(each);
+        else
+          sum += each;
+      }
     }
     return sum;
   }

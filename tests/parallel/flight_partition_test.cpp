@@ -144,24 +144,28 @@ TEST(SumOfEachFlight, AddsInTheOrderOfFlights) {
     run_with_communicator(size, [&](Communicator& comm) {
       const FlightPartition share = share_of_many(comm);
       EXPECT_EQ(share.sum_of_each_flight<double>(part), expected);
+      EXPECT_EQ(share.sum_of_each_flight<double>(part, 3), expected);
     });
   }
   EXPECT_EQ(FlightPartition(0).sum_of_each_flight<double>(part), 0.0);
 }
 
 TEST(SumOfEachFlight, FailsOnAllMembers) {
-  std::vector<int> failed(3, 0);
-  run_with_communicator(3, [&](Communicator& comm) {
-    try {
-      share_of_many(comm).sum_of_each_flight<double>([](std::size_t flight) {
-        if (flight == 41 || flight == 43) throw Error(Error::Code::file, "flight " + std::to_string(flight));
-        return 1.0;
-      });
-    } catch (const Error& error) {
-      if (std::string(error.what()) == "flight 41") ++failed[comm.rank()];
-    }
-  });
-  EXPECT_THAT(failed, Each(1));
+  const auto part = [](std::size_t flight) {
+    if (flight == 41 || flight == 43) throw Error(Error::Code::file, "flight " + std::to_string(flight));
+    return 1.0;
+  };
+  for (const std::size_t threads : {1U, 2U}) {
+    std::vector<int> failed(3, 0);
+    run_with_communicator(3, [&](Communicator& comm) {
+      try {
+        share_of_many(comm).sum_of_each_flight<double>(part, threads);
+      } catch (const Error& error) {
+        if (std::string(error.what()) == "flight 41") ++failed[comm.rank()];
+      }
+    });
+    EXPECT_THAT(failed, Each(1));
+  }
 }
 
 TEST(SumOfEachFlight, MatrixSumEqualsThatOfOneMember) {
