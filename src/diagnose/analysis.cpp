@@ -26,6 +26,14 @@ constexpr double stretch_time = 300.0;  // s
 /// Maximum share of one held-out part: of a flight of a few minutes the rest would not determine a fit.
 constexpr double max_share_of_part = 0.8;
 
+/// Equality of matrices that may differ in size.
+template <class Matrices>
+bool are_equal(const Matrices& some, const Matrices& others) {
+  return std::equal(some.begin(), some.end(), others.begin(), others.end(), [](const auto& a, const auto& b) {
+    return a.rows() == b.rows() && a.cols() == b.cols() && a == b;
+  });
+}
+
 }  // namespace
 
 std::size_t held_out_part(const FlightSamples& samples, double time) {
@@ -159,16 +167,19 @@ std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& gr
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients,
                           bool is_rough) {
   const std::size_t threads = Workers(share_.comm(), 0).threads;
-  bool is_first = true;
+  std::size_t reference = 0;
   likelihood_ = 0.0;
   noise_ =
       noise_after(groups, coefficients, [&](const auto& bins, const auto& columns, const auto& residuals) {
         if (is_rough) return estimate_noise(bins, residuals);
-        const FoundNoise found = internal::find_noise(bins, columns, residuals, threads);
-        if (is_first) drift_gain_ = found.drift_gain;
-        is_first = false;
-        likelihood_ += found.likelihood;
-        return with_slower_noise(found.model);  // this likelihood includes only what the flights show
+        if (reference == known_noise_.size()) known_noise_.emplace_back();
+        KnownNoise& known = known_noise_[reference];
+        if (!are_equal(known.columns, columns) || !are_equal(known.residuals, residuals))
+          known = {columns, residuals, internal::find_noise(bins, columns, residuals, threads)};
+        if (reference == 0) drift_gain_ = known.found.drift_gain;
+        ++reference;
+        likelihood_ += known.found.likelihood;
+        return with_slower_noise(known.found.model);  // this likelihood includes only what the flights show
       });
   coefficients_ = coefficients;
 }

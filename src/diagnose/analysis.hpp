@@ -111,6 +111,13 @@ class Analysis {
   std::vector<double> drift(std::size_t flight, const Eigen::VectorXd& coefficients) const;
 
  private:
+  /// Noise against a reference, and the columns and residuals that it was found from; bins never change.
+  struct KnownNoise {
+    std::vector<Eigen::MatrixXd> columns{};
+    std::vector<Eigen::VectorXd> residuals{};
+    FoundNoise found{};
+  };
+
   /// Iterates noise and effects until they are stable. Returns the likelihood of the result minus the cost of
   /// its effects. @param generous removes all candidate effects before the first noise estimate
   double search_from(const Eigen::VectorXd& start, bool generous);
@@ -156,6 +163,7 @@ class Analysis {
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
   std::vector<NoiseModel> noise_{};
+  std::vector<KnownNoise> known_noise_{};  // by reference: some see none of the effects that are tried
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
   Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS
