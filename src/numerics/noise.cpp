@@ -17,7 +17,6 @@ namespace {
 constexpr std::array<std::size_t, 7> lags{1, 2, 4, 8, 16, 32, 64};
 constexpr double plateau_growth = 1.15;
 constexpr std::size_t min_differences = 30;
-constexpr std::size_t max_order = 20;
 constexpr std::size_t orders_in_vain = 5;
 
 /// The differences over `lag` samples that begin in [first, last) of the series; `every` is the step from one
@@ -127,7 +126,8 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<doub
   return floor;
 }
 
-std::vector<double> autoregression(const std::vector<double>& values, const std::vector<Segment>& segments) {
+std::vector<double> autoregression(const std::vector<double>& values, const std::vector<Segment>& segments,
+                                   std::size_t max_order) {
   constexpr double limit = 4.5;  // robust standard deviations
   std::vector<double> kept;
   for (const Segment& segment : segments)

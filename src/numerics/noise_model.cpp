@@ -16,6 +16,9 @@
 namespace pcor::internal {
 namespace {
 
+/// Maximum order of the autoregression in bins of the usual width: the drift components describe a memory of
+/// 50 s and more.
+constexpr auto max_order = static_cast<std::size_t>(slow_times.front() / Binning::usual_width);
 constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t max_shapes = 48;
 constexpr double min_period = 300.0;  // s
@@ -256,7 +259,7 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
   for (int round = 0; round < rounds; ++round) {
     std::vector<Eigen::VectorXd> scaled;
     for (std::size_t f = 0; f < bins.size(); ++f) scaled.emplace_back(fast[f].cwiseQuotient(noise.level[f]));
-    noise.coefficients = autoregression(concatenated(scaled), segments);
+    noise.coefficients = autoregression(concatenated(scaled), segments, max_order);
     std::vector<Eigen::VectorXd> innovations;
     for (std::size_t f = 0; f < bins.size(); ++f)
       innovations.push_back(at_one_level(fast[f], bins[f], noise));

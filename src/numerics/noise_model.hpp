@@ -16,8 +16,9 @@ inline constexpr std::array<double, 5> slow_times{50.0, 200.0, 800.0, 3200.0, 12
 /// Noise of a series of binned residuals: an autoregression whose level changes every five minutes, plus
 /// drift components, which are first-order processes with given time constants.
 struct NoiseModel {
-  std::vector<double> coefficients{};            ///< coefficients of the autoregression, from bin to bin
-  std::vector<Eigen::VectorXd> level{};          ///< rms of the innovations in each bin of each flight, hPa
+  std::vector<double> coefficients{};    ///< coefficients of the autoregression, from bin to bin, 12 at
+                                         ///< most
+  std::vector<Eigen::VectorXd> level{};  ///< rms of the innovations in each bin of each flight, hPa
   std::array<double, slow_times.size()> slow{};  ///< rms of each slow part, hPa
   double common_level = 0.0;                     ///< level to which the level of each five minutes is shrunk,
                                                  ///< hPa

@@ -143,6 +143,16 @@ TEST(Autoregression, EstimatesASecondOrderProcess) {
   EXPECT_NEAR(found[1], -0.5, 0.03);
 }
 
+TEST(Autoregression, OrderIsLimited) {
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(20000, 0.0);  // depends on the values one and six steps before
+  for (std::size_t i = 6; i < values.size(); ++i)
+    values[i] = 0.4 * values[i - 1] + 0.4 * values[i - 6] + normal(engine);
+  EXPECT_GE(pcor::autoregression(values, whole(values)).size(), 6U);
+  EXPECT_LE(pcor::autoregression(values, whole(values), 5).size(), 5U);
+}
+
 TEST(Autoregression, GapsDoNotBiasTheEstimate) {
   std::vector<double> values = first_order(20000, 0.7, 9);
   for (std::size_t i = 100; i < values.size(); i += 101) values[i] = missing;

@@ -42,9 +42,10 @@ struct NoiseFloor {
 NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<double>& time, double step);
 
 /// Coefficients a_1 ... a_p of the stationary process e(t) = a_1 e(t-1) + ... + a_p e(t-p) + innovation
-/// fitted to a series: Burg's method over all segments together, order 0 to 20 with the least Bayesian
-/// information criterion; the search stops after five orders without improvement. All orders are stationary.
-/// Values beyond 4.5 robust standard deviations are set to that limit.
-std::vector<double> autoregression(const std::vector<double>& values, const std::vector<Segment>& segments);
+/// fitted to a series: Burg's method over all segments together, order 0 to `max_order` with the least
+/// Bayesian information criterion; the search stops after five orders without improvement. All orders are
+/// stationary. Values beyond 4.5 robust standard deviations are set to that limit.
+std::vector<double> autoregression(const std::vector<double>& values, const std::vector<Segment>& segments,
+                                   std::size_t max_order = 20);
 
 }  // namespace pcor
