@@ -20,6 +20,9 @@ namespace {
 constexpr double redundant_below = 1e-3;  // share of the variance after the base, given other groups
 /// Minimum share of a column's variance that the base does not explain; single precision has errors of 1e-6.
 constexpr double min_left = 1e-6;
+/// Minimum length of the column of a shape, whitened. Shorter columns explain no residual: their coefficients
+/// have a prior of variance 1. What rounding leaves of a zero column would make the equations singular.
+constexpr double min_shape = 1e-3;
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
@@ -198,8 +201,10 @@ double Search::remaining(std::size_t group, const Eigen::VectorXd& coefficients)
 std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set) const {
   std::vector<Eigen::Index> shapes;
   for (const std::size_t group : set) {
-    for (Eigen::Index k = 0; k < groups_[group].shape_count; ++k)
-      shapes.push_back(groups_[group].shape_first + k);
+    for (Eigen::Index k = 0; k < groups_[group].shape_count; ++k) {
+      const Eigen::Index shape = groups_[group].shape_first + k;
+      if (scale_[base_ + shape] * min_shape < 1.0) shapes.push_back(shape);
+    }
   }
   return shapes;
 }

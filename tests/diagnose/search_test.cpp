@@ -563,6 +563,22 @@ TEST(Search, UncertainShapeIsNotASecondEffect) {
   EXPECT_DOUBLE_EQ(search.score(0, {}).chi2, evidence);
 }
 
+// A column of an uncertain shape that is zero except for rounding changes no result.
+TEST(Search, ShapeOfRoundingErrorsExplainsNothing) {
+  Problem problem(600, 4, 31);
+  problem.residual += 2.0 * problem.candidate(0) + 0.4 * problem.candidate(2);
+  problem.candidate(3) *= 1e-15;
+  problem.group_by(1);
+  problem.groups.pop_back();
+  const double variance = problem.search().variance({0, 2});
+  const double evidence = problem.search().evidence({0, 2});
+  problem.groups[0].shape_first = 3;
+  problem.groups[0].shape_count = 1;
+  const Search search = problem.search();
+  EXPECT_DOUBLE_EQ(search.variance({0, 2}), variance);
+  EXPECT_DOUBLE_EQ(search.evidence({0, 2}), evidence);
+}
+
 // An effect that resembles the uncertain shape of one finding is not a rival of another finding.
 TEST(Search, UncertainShapeIsNotARivalOfAnotherFinding) {
   Problem problem(600, 4, 31);
