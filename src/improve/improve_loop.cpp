@@ -11,6 +11,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/static_surface.hpp>
+#include "campaign/reference_id.hpp"
 #include "diagnose/finding_page.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
@@ -242,9 +243,13 @@ class ForwardSelection {
       const TrialComparison& compared = offer->compared;
       figures = fmt::format("rms {} with it, {} without it on {}", shown(compared.rms_after),
                             shown(compared.rms_before), offer->compared_on);
-      if (!compared.is_better() || !(compared.rms_after <= unnamed_limit * compared.rms_before)) {
-        result_.why_stopped += fmt::format("; rejected: {}, {}; it must reduce the rms by {:.0f} %", id,
-                                           figures, 100.0 * (1.0 - unnamed_limit));
+      const bool is_smaller = compared.rms_after <= unnamed_limit * compared.rms_before;
+      if (!is_smaller || !compared.is_better()) {
+        const std::string why =
+            is_smaller ? fmt::format("the decrease of chi2, {:.0f} +- {:.0f}, is not significant",
+                                     compared.gain, compared.gain_error)
+                       : fmt::format("it must reduce the rms by {:.0f} %", 100.0 * (1.0 - unnamed_limit));
+        result_.why_stopped += fmt::format("; rejected: {}, {}; {}", id, figures, why);
         return;
       }
       fit = loop_.refit(offer->model);
@@ -269,10 +274,17 @@ class ForwardSelection {
         "{}: {:.1f} degrees of freedom; {}, decrease of chi2 {:.0f} +- {:.0f}; the surface describes "
         "the residual and identifies no cause",
         id, degrees, figures, offer->compared.gain, offer->compared.gain_error);
-    // The uncertainty of the choice among rivals stays part of the stated error.
-    add_rival_error(fit.model);
-    delivered_.file = fit.model;
+    if (offer->may_be_of_reference) {
+      // The systems are alike, so the surface is as probable on each.
+      constexpr double probability = 0.5;
+      step.rivals = {{id, probability, offer->static_change},
+                     {id_on_other_system("", id), 1.0 - probability}};
+      step.rival_error = std::sqrt(1.0 - probability) * offer->static_change;
+    }
     take(std::move(step), std::move(fit), {}, delivered_.alike);
+    // The uncertainty of the choice among rivals stays part of the stated error.
+    add_rival_error(result_.fit.model);
+    delivered_.file = result_.fit.model;
   }
 
   /// Compares the delivered model with the input model.

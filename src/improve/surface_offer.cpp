@@ -1,5 +1,6 @@
 #include "improve/surface_offer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/effects/static_surface.hpp>
 #include <pcor/roles/add_effects.hpp>
+#include "diagnose/rms.hpp"
 #include "fit/fitted_model.hpp"
 #include "numerics/missing.hpp"
 
@@ -95,6 +97,13 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
   TrialModel fitted = models[1];
   fitted.file = fitted_coefficients(flights, models[1].file, references, of_all, surfaces);
   const std::vector<TrialFlight> tried = try_models(flights, {model, fitted}, references, options);
+  std::vector<double> changes = static_pressures_of(tried, 1);
+  const std::vector<double> before = static_pressures_of(tried, 0);
+  for (std::size_t i = 0; i < changes.size(); ++i) changes[i] -= before[i];
+  offer.static_change = square_sum_of(changes).rms();
+  offer.may_be_of_reference = !options.trust_reference &&
+                              std::none_of(references.begin(), references.end(),
+                                           [](const auto& reference) { return reference->reads_laser(); });
   if (!options.holdout.empty() || options.training_share < 1.0) {
     offer.compared_on = "held-out samples";
     offer.compared = comparison_of(tried, 0, 1, true);

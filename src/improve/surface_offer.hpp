@@ -12,6 +12,9 @@ struct SurfaceOffer {
   TrialModel model{};
   TrialComparison compared{};  ///< comparison without and with the surface
   std::string compared_on{};   ///< description of the samples
+  double static_change = 0.0;  ///< change of the corrected static pressure by the surface, rms hPa
+  /// True if all references are other systems, none of them trusted: the surface may be of either system.
+  bool may_be_of_reference = false;
 };
 
 /// Compares a model with and without a surface of attack and Mach number on held-out flights or parts; if

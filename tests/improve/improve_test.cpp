@@ -372,6 +372,25 @@ TEST_F(Improve, SurfaceThatCannotBeFittedIsNotAdded) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("not determined"));
 }
 
+// Against other systems alone a surface is as probable on either.
+TEST_F(Improve, SurfaceThatMayBeOfTheReferenceIncreasesTheStatedError) {
+  for (const bool may_be_of_reference : {false, true}) {
+    loop_.offer_surface = [may_be_of_reference](const TrialModel& model) {
+      SurfaceOffer offer = helpful_surface(model);
+      offer.static_change = 0.4;
+      offer.may_be_of_reference = may_be_of_reference;
+      return offer;
+    };
+    const Improvement improvement = run({diagnosis(Verdict::unexplained)});
+    ASSERT_EQ(improvement.steps.size(), 2U);
+    const double expected = may_be_of_reference ? 0.4 * std::sqrt(0.5) : 0.0;
+    EXPECT_DOUBLE_EQ(improvement.steps[1].rival_error, expected);
+    EXPECT_EQ(improvement.steps[1].rivals.size(), may_be_of_reference ? 2U : 0U);
+    EXPECT_EQ(improvement.steps[1].delivered, improvement.steps[1].added);
+    EXPECT_DOUBLE_EQ(improvement.model.uncertainty.static_defect.value_or(0.0), expected);
+  }
+}
+
 // A drift of either system cannot be added, and a surface of the attack would imitate it on these flights.
 TEST_F(Improve, SurfaceDoesNotReplaceALargerEffectOfAnotherKind) {
   loop_.offer_surface = helpful_surface;
