@@ -163,7 +163,7 @@ class Analysis {
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
   std::vector<NoiseModel> noise_{};
-  std::vector<KnownNoise> known_noise_{};  // by reference: some see none of the effects that are tried
+  std::vector<KnownNoise> known_noise_{};  // one per reference; some references see no tested effect
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
   Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS

@@ -21,7 +21,7 @@ constexpr double redundant_below = 1e-3;  // share of the variance after the bas
 /// Minimum share of a column's variance that the base does not explain; single precision has errors of 1e-6.
 constexpr double min_left = 1e-6;
 /// Minimum length of the column of a shape, whitened. Shorter columns explain no residual: their coefficients
-/// have a prior of variance 1. What rounding leaves of a zero column would make the equations singular.
+/// have a prior of variance 1. The rounding errors of a zero column would make the equations singular.
 constexpr double min_shape = 1e-3;
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double enough_blocks = 12.0;

@@ -13,7 +13,7 @@ struct SurfaceOffer {
   TrialComparison compared{};  ///< comparison without and with the surface
   std::string compared_on{};   ///< description of the samples
   double static_change = 0.0;  ///< change of the corrected static pressure by the surface, rms hPa
-  /// True if all references are other systems, none of them trusted: the surface may be of either system.
+  /// True if all references are other static systems that are not trusted: the surface may be of either one.
   bool may_be_of_reference = false;
 };
 
