@@ -1,15 +1,12 @@
 #include "campaign/gps_noise.hpp"
 
-#include <ceres/gradient_problem.h>
-#include <ceres/gradient_problem_solver.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
-#include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -141,57 +138,80 @@ WhiteRows white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const
   return rows.kind == GpsKind::wind ? white_wind(sizes, rows, more) : white_height(sizes, rows, more);
 }
 
-class Likelihood final : public ceres::FirstOrderFunction {
- public:
-  Likelihood(Eigen::Index sizes, const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior)
-      : sizes_(sizes), rows_(rows), more_(more), prior_(prior) {}
+/// Minus the log likelihood of the sizes, with the priors, and what it follows from.
+struct Trial {
+  Eigen::VectorXd logarithms{};
+  WhiteRows white{};
+  Eigen::VectorXd coefficients{};  // most likely ones at these sizes
+  double cost = 0.0;               // up to a constant
 
-  bool Evaluate(const double* const at, double* cost, double* gradient) const override {
-    const Eigen::Map<const Eigen::VectorXd> logarithms(at, sizes_);
-    *cost = cost_at(logarithms);
-    if (gradient != nullptr) {
-      constexpr double step = 1e-3;
-      for (Eigen::Index k = 0; k < sizes_; ++k) {
-        Eigen::VectorXd moved = logarithms;
-        moved[k] += step;
-        gradient[k] = (cost_at(moved) - *cost) / step;
-      }
-    }
-    return std::isfinite(*cost);
+  /// Whitened residual after the fit of columns with these coefficients.
+  Eigen::VectorXd left(const Eigen::VectorXd& at) const {
+    const Eigen::Index count = at.size();
+    return white.rows.col(count) - white.rows.leftCols(count) * at;
   }
-
-  int NumParameters() const override { return static_cast<int>(sizes_); }
-
-  /// Minus the log likelihood, with the priors, up to a constant.
-  double cost_at(const Eigen::VectorXd& logarithms) const {
-    const WhiteRows white = white_at(logarithms, rows_, more_);
-    const Eigen::Index count = white.rows.cols() - 1;
-    Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
-    products.selfadjointView<Eigen::Lower>().rankUpdate(white.rows.transpose());
-    products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
-    // In units of the prior the matrix does not depend on the units of the columns.
-    const Eigen::VectorXd& unit = prior_.deviation;
-    Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
-    matrix.diagonal().array() += 1.0;
-    const Eigen::VectorXd mean = prior_.mean.cwiseQuotient(unit);
-    const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
-    const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
-    double result = white.log_determinant + products(count, count) + mean.squaredNorm() -
-                    right.dot(factor.solve(right)) + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
-    for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
-      const Size& size = size_of(rows_.kind, k);
-      const double off = (logarithms[k] - std::log(size.median)) / size.deviation;
-      result += off * off;
-    }
-    return 0.5 * result;
+  /// Logarithms of the variances of the innovations; zero where a row has no value.
+  Eigen::ArrayXd log_variances() const {
+    return (white.variance.array() > 0.0).select(white.variance.array(), 1.0).log();
   }
-
- private:
-  Eigen::Index sizes_;
-  const GpsRows& rows_;
-  const Eigen::VectorXd& more_;
-  const GpsPrior& prior_;
 };
+
+Trial trial_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more,
+               const GpsPrior& prior) {
+  Trial trial{logarithms, white_at(logarithms, rows, more)};
+  const Eigen::Index count = trial.white.rows.cols() - 1;
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
+  products.selfadjointView<Eigen::Lower>().rankUpdate(trial.white.rows.transpose());
+  products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
+  // In units of the prior the matrix does not depend on the units of the columns.
+  const Eigen::VectorXd& unit = prior.deviation;
+  Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
+  matrix.diagonal().array() += 1.0;
+  const Eigen::VectorXd mean = prior.mean.cwiseQuotient(unit);
+  const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
+  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+  const Eigen::VectorXd best = factor.solve(right);
+  trial.coefficients = unit.cwiseProduct(best);
+  trial.cost = trial.white.log_determinant + products(count, count) + mean.squaredNorm() - right.dot(best) +
+               2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
+    const Size& size = size_of(rows.kind, k);
+    const double off = (logarithms[k] - std::log(size.median)) / size.deviation;
+    trial.cost += off * off;
+  }
+  trial.cost *= 0.5;
+  return trial;
+}
+
+/// Gradient of the cost and Fisher information of the sizes, with the priors, by forward differences (Harvey
+/// 1989, section 3.4.5). The information is that with known coefficients.
+struct Slope {
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd information;
+};
+
+Slope slope_at(const Trial& trial, const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior) {
+  constexpr double step = 1e-3;
+  const Eigen::Index count = trial.logarithms.size();
+  const Eigen::ArrayXd variances = trial.log_variances();
+  const Eigen::VectorXd left = trial.left(trial.coefficients);
+  Slope slope{Eigen::VectorXd(count), {}};
+  Eigen::MatrixXd by_variance(left.size(), count);
+  Eigen::MatrixXd by_mean(left.size(), count);  // innovations in units of their deviation
+  for (Eigen::Index k = 0; k < count; ++k) {
+    Eigen::VectorXd moved = trial.logarithms;
+    moved[k] += step;
+    const Trial beside = trial_at(moved, rows, more, prior);
+    slope.gradient[k] = (beside.cost - trial.cost) / step;
+    by_variance.col(k) = (beside.log_variances() - variances) / step;
+    by_mean.col(k) =
+        (beside.left(trial.coefficients) - left) / step + 0.5 * left.cwiseProduct(by_variance.col(k));
+  }
+  slope.information = 0.5 * by_variance.transpose() * by_variance + by_mean.transpose() * by_mean;
+  for (Eigen::Index k = 0; k < count; ++k)
+    slope.information(k, k) += std::pow(size_of(rows.kind, k).deviation, -2.0);
+  return slope;
+}
 
 }  // namespace
 
@@ -205,18 +225,29 @@ WhiteRows GpsNoise::white(const GpsRows& rows, const Eigen::VectorXd& more) cons
 }
 
 void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior) {
-  ceres::GradientProblemSolver::Options options;
-  options.max_num_iterations = 15;
+  constexpr int max_steps = 15;
   // Half a unit of the logarithm of the likelihood is one standard deviation of a size.
   constexpr double enough = 0.02;
-  auto* const likelihood = new Likelihood(logarithms_.size(), rows, more, prior);
-  const ceres::GradientProblem problem(likelihood);  // owns it
-  options.function_tolerance = enough / std::max(1.0, std::abs(likelihood->cost_at(logarithms_)));
-  options.logging_type = ceres::SILENT;
-  ceres::GradientProblemSolver::Summary summary;
-  Eigen::VectorXd found = logarithms_;
-  ceres::Solve(options, problem, found.data(), &summary);
-  if (found.allFinite()) logarithms_ = found;
+  Trial trial = trial_at(logarithms_, rows, more, prior);
+  if (!std::isfinite(trial.cost)) return;
+  for (int number = 0; number < max_steps; ++number) {
+    const Slope slope = slope_at(trial, rows, more, prior);
+    Eigen::VectorXd step = slope.information.ldlt().solve(-slope.gradient);
+    const double expected = -0.5 * slope.gradient.dot(step);
+    if (!(expected > enough)) break;
+    // The information is that of small steps: no size changes by more than a factor of e.
+    step /= std::max(1.0, step.cwiseAbs().maxCoeff());
+    constexpr int max_halvings = 5;
+    Trial next;
+    double share = 1.0;
+    for (int halving = 0; halving <= max_halvings; ++halving, share *= 0.5) {
+      next = trial_at(trial.logarithms + share * step, rows, more, prior);
+      if (next.cost < trial.cost) break;
+    }
+    if (!(next.cost < trial.cost)) break;
+    trial = std::move(next);
+  }
+  logarithms_ = trial.logarithms;
 }
 
 void widen(GpsPrior& prior, const WhiteRows& white) {

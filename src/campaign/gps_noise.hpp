@@ -32,7 +32,7 @@ class GpsNoise {
   /// Whitened rows without excluded samples. @param more variance of outliers, of each row
   WhiteRows white(const GpsRows& rows, const Eigen::VectorXd& more) const;
 
-  /// Estimates the sizes. @param prior of the columns of the rows
+  /// Estimates the sizes by Fisher scoring. @param prior of the columns of the rows
   void maximise(const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior);
 
   const Eigen::VectorXd& logarithms() const { return logarithms_; }

@@ -35,9 +35,11 @@ class LatentFilter {
 
   /// Time update: every process keeps its fraction `stays`, and the variance `added` enters.
   void pass(const States& stays, const States& added) {
-    covariance_ = stays.asDiagonal() * covariance_ * stays.asDiagonal();
+    for (Eigen::Index to = 0; to < count; ++to) {
+      covariance_.col(to).array() *= stays.array() * stays[to];
+      means_.row(to) *= stays[to];
+    }
     covariance_.diagonal() += added;
-    means_ = stays.asDiagonal() * means_;
   }
 
   /// Adds `times` times the process `from` to the process `to`.
@@ -50,12 +52,20 @@ class LatentFilter {
   /// Reads one row, `row` = `by` times the processes + noise of this variance, as number `number`.
   template <class Row>
   void read(Eigen::Index number, const Row& row, const States& by, double noise) {
-    const States shared = covariance_ * by;
-    const double variance = by.dot(shared) + noise;
+    // A row depends on some of the processes.
+    States shared = States::Zero();
     change_ = row;
-    change_.noalias() -= by.transpose() * means_;
-    means_.noalias() += (shared / variance) * change_;
-    covariance_.noalias() -= (shared / variance) * shared.transpose();
+    for (Eigen::Index from = 0; from < count; ++from) {
+      if (by[from] == 0.0) continue;
+      shared += by[from] * covariance_.col(from);
+      change_ -= by[from] * means_.row(from);
+    }
+    const double variance = by.dot(shared) + noise;
+    const States gain = shared / variance;
+    for (Eigen::Index to = 0; to < count; ++to) {
+      covariance_.col(to) -= shared[to] * gain;
+      means_.row(to) += gain[to] * change_;
+    }
     white_.rows.row(number) = change_ * (1.0 / std::sqrt(variance));
     white_.variance[number] = variance;
     white_.log_determinant += std::log(variance);
