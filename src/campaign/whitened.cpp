@@ -12,7 +12,6 @@
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/packed.hpp"
-#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -43,8 +42,6 @@ std::vector<Eigen::Index> columns_seen(const std::vector<BinnedRows>& flights) {
   }
   return seen;
 }
-
-std::size_t threads_of(const FlightPartition& share) { return Workers(share.comm(), 0).threads; }
 
 /// Rows and minutes of a flight.
 using RowCount = std::pair<std::size_t, Eigen::Index>;
@@ -176,7 +173,7 @@ Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(s
 
 void sum_up(WhitenedSystem& scores) {
   scores.information = scores.share.sum_of_each_flight<Eigen::MatrixXd>(
-      [&](std::size_t f) { return products_of(scores.rows[f]); }, threads_of(scores.share));
+      [&](std::size_t f) { return products_of(scores.rows[f]); }, scores.share.threads());
 }
 
 void marginalize(WhitenedSystem& system, Eigen::Index count) {
@@ -253,7 +250,7 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
         return RowCount{static_cast<std::size_t>(scores.rows[f].rows()),
                         find_blocks(bins[f], scores.block[f])};
       },
-      0, threads_of(share));
+      0, share.threads());
   for (std::size_t f = 0; f < counts.size(); ++f) {
     for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
     const auto& [rows, blocks] = counts[f];
@@ -271,7 +268,7 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
                                  ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
                                  : scores.rows[f]);
         },
-        threads_of(share));
+        share.threads());
   }
   return scores;
 }

@@ -23,7 +23,6 @@
 #include "numerics/missing.hpp"
 #include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
-#include "parallel/workers.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 
@@ -206,8 +205,7 @@ NoiseFlight noise_flight_of(const Binning& bins) {
 /// from at most six of them; the level is the level of each flight.
 /// @param records of the flights of this rank, for each model
 void add_variances(std::size_t model, const FlightPartition& share,
-                   const std::vector<std::vector<SummedRecords>>& records, std::size_t threads,
-                   std::vector<FlightPart>& parts) {
+                   const std::vector<std::vector<SummedRecords>>& records, std::vector<FlightPart>& parts) {
   BinnedFlights flights;
   for (std::size_t f = 0; f < parts.size(); ++f) {
     static const BinnedResidual none;
@@ -225,16 +223,16 @@ void add_variances(std::size_t model, const FlightPartition& share,
   fit.columns = [&](std::size_t f) { return Eigen::MatrixXd::Ones(flights.residuals[f].size(), 1); };
   fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
   const std::vector<NoiseModel> noise = noise_of_flights(
-      share, flights, fit, [threads](const auto& bins, const auto& columns, const auto& left) {
+      share, flights, fit, [&share](const auto& bins, const auto& columns, const auto& left) {
         constexpr std::size_t enough = 6;
         std::vector<NoiseFlight> outlines;
         for (const Binning& own : bins) outlines.push_back(noise_flight_of(own));
         const std::vector<std::size_t> few = flights_for_noise(outlines, enough);
         return expected_noise(entries_of(bins, few), entries_of(columns, few), entries_of(left, few),
-                              threads);
+                              share.threads());
       });
   const auto variances = share.map<std::vector<double>>(
-      threads, [](std::size_t f) { return f; },
+      share.threads(), [](std::size_t f) { return f; },
       [&](std::size_t f, std::size_t) {
         const SummedRecords& summed = records[f][model];
         std::vector<double> result;
@@ -288,10 +286,9 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     return part;
   };
   const bool keeps_all = flights.size() <= options.max_series;
-  const std::size_t threads = Workers(flights.comm(), 0).threads;
   std::vector<std::vector<SummedRecords>> records(flights.size());
   auto parts = flights.share().map<FlightPart>(
-      threads,
+      flights.share().threads(),
       [&](std::size_t number) {
         tell();
         return read(number);
@@ -323,7 +320,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
                       "does; the residual of '{}' is the difference of two laws and does not test it",
                       reference->name(), own, compared->name)));
     }
-    add_variances(m, flights.share(), records, threads, parts);
+    add_variances(m, flights.share(), records, parts);
     ModelSums sums;
     std::vector<PartStatistics> of_flights;
     for (const FlightPart& part : parts) sums.add(part.models[m]);

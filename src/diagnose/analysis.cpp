@@ -12,7 +12,6 @@
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/whitening.hpp"
-#include "parallel/workers.hpp"
 #include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
@@ -166,7 +165,6 @@ std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& gr
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients,
                           bool is_rough) {
-  const std::size_t threads = Workers(share_.comm(), 0).threads;
   std::size_t reference = 0;
   likelihood_ = 0.0;
   noise_ =
@@ -175,7 +173,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
         if (reference == known_noise_.size()) known_noise_.emplace_back();
         KnownNoise& known = known_noise_[reference];
         if (!are_equal(known.columns, columns) || !are_equal(known.residuals, residuals))
-          known = {columns, residuals, internal::find_noise(bins, columns, residuals, threads)};
+          known = {columns, residuals, internal::find_noise(bins, columns, residuals, share_.threads())};
         if (reference == 0) drift_gain_ = known.found.drift_gain;
         ++reference;
         likelihood_ += known.found.likelihood;
@@ -185,23 +183,23 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
 }
 
 NoiseModel Analysis::noise_beside_offsets() const {
-  const std::size_t threads = Workers(share_.comm(), 0).threads;
   bool is_first = true;
-  const auto noise = noise_after(
-      result_.chosen, coefficients(result_.chosen),
-      [&](const auto& bins, const auto& columns, const auto& residuals) {
-        if (!std::exchange(is_first, false)) return estimate_noise(bins, residuals);
-        std::vector<Eigen::MatrixXd> with_offsets = columns;
-        std::vector<Eigen::VectorXd> about_means = residuals;
-        const Eigen::Index offsets = as_index(bins.size()) - 1;
-        for (std::size_t f = 0; f < bins.size(); ++f) {
-          Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns[f].rows(), offsets);
-          if (f > 0) own.col(as_index(f) - 1).setOnes();
-          with_offsets[f] = side_by_side(columns[f], own);
-          if (residuals[f].size() > 0) about_means[f].array() -= residuals[f].mean();
-        }
-        return with_slower_noise(internal::find_noise(bins, with_offsets, about_means, threads).model);
-      });
+  const auto noise =
+      noise_after(result_.chosen, coefficients(result_.chosen),
+                  [&](const auto& bins, const auto& columns, const auto& residuals) {
+                    if (!std::exchange(is_first, false)) return estimate_noise(bins, residuals);
+                    std::vector<Eigen::MatrixXd> with_offsets = columns;
+                    std::vector<Eigen::VectorXd> about_means = residuals;
+                    const Eigen::Index offsets = as_index(bins.size()) - 1;
+                    for (std::size_t f = 0; f < bins.size(); ++f) {
+                      Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns[f].rows(), offsets);
+                      if (f > 0) own.col(as_index(f) - 1).setOnes();
+                      with_offsets[f] = side_by_side(columns[f], own);
+                      if (residuals[f].size() > 0) about_means[f].array() -= residuals[f].mean();
+                    }
+                    return with_slower_noise(
+                        internal::find_noise(bins, with_offsets, about_means, share_.threads()).model);
+                  });
   return noise_of_first_reference(binned_, noise);
 }
 

@@ -12,7 +12,6 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/workers.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/samples.hpp"
 
@@ -98,11 +97,11 @@ TeamColumns columns_of_entries(const FlightPartition& share,
                                const std::function<SamplesOfFlight(std::size_t)>& read,
                                const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
   std::vector<FlightColumns> own(share.flights());
-  TeamColumns columns{share, share.map<FlightColumns>(Workers(share.comm(), 0).threads, read,
-                                                      [&](std::size_t entry, SamplesOfFlight samples) {
-                                                        own[entry] = make(entry, std::move(samples));
-                                                        return outline_of(own[entry]);
-                                                      })};
+  TeamColumns columns{
+      share, share.map<FlightColumns>(share.threads(), read, [&](std::size_t entry, SamplesOfFlight samples) {
+        own[entry] = make(entry, std::move(samples));
+        return outline_of(own[entry]);
+      })};
   for (std::size_t entry = 0; entry < own.size(); ++entry) {
     if (share.is_local(entry)) columns.flights[entry] = std::move(own[entry]);
   }

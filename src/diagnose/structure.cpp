@@ -15,7 +15,6 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -89,10 +88,7 @@ Eigen::MatrixXd DrawnResiduals::products_with(const Eigen::MatrixXd& columns) co
 StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& binned,
                              const NoiseModel& noise, std::uint64_t seed,
                              const std::vector<Eigen::MatrixXd>& aside)
-    : share_(share),
-      threads_(Workers(share.comm(), 0).threads),
-      bins_(binned.bins),
-      largest_(Eigen::VectorXd::Zero(2 * draws)) {
+    : share_(share), bins_(binned.bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
   const std::vector<Eigen::VectorXd>& residuals = binned.residuals;
   std::vector<Eigen::MatrixXd> with_aside = binned.columns;
@@ -123,7 +119,7 @@ StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& 
           flights.drawn[f] = drawn(noise_alone[f], bins_[f], seed + f, seed);
           return flights.drawn[f].products_with(flights.model[f]);
         },
-        threads_);
+        share.threads());
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
 }
@@ -226,7 +222,7 @@ void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
   if (smooth.columns() == 0) return;
   const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, variable);
   const auto sums = share_.sum_of_each_flight<Eigen::MatrixXd>(
-      [&](std::size_t f) { return products(f, columns[f]); }, threads_);
+      [&](std::size_t f) { return products(f, columns[f]); }, share_.threads());
   const Eigen::Index width = sums.cols() / as_index(whitened_.size());
   Structure structure;
   structure.variable = &variable;

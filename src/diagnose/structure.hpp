@@ -107,7 +107,6 @@ class StructureTest {
   double minus_likelihood(const Whitened& flights, double taken) const;
 
   FlightPartition share_;
-  std::size_t threads_;
   std::vector<Binning> bins_;
   std::size_t rows_ = 0;              // all flights
   std::vector<Whitened> whitened_{};  // one per remaining part of the drift, full drift first

@@ -15,7 +15,6 @@
 #include "numerics/robust_weights.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -281,7 +280,7 @@ WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const Candidate
        [&](std::size_t f) -> Eigen::VectorXd { return binned_.residuals[f] - binned_.columns[f] * values; },
        digest_of(packed(values))},
       [&](const auto& bins, const auto& fitted, const auto& left) {
-        return find_noise(bins, fitted, left, Workers(share.comm(), 0).threads).model;
+        return find_noise(bins, fitted, left, share.threads()).model;
       });
   const WhitenedSystem with_noise =
       find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);

@@ -18,6 +18,7 @@
 
 #include "parallel/digest.hpp"
 #include "parallel/packed.hpp"
+#include "parallel/workers.hpp"
 
 namespace pcor::internal {
 
@@ -48,6 +49,8 @@ class FlightPartition {
     return static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), comm_->rank()));
   }
   Communicator& comm() const { return *comm_; }
+  /// Threads of this rank for work on its flights.
+  std::size_t threads() const { return Workers(*comm_, 0).threads; }
 
   /// The share of a list whose entries are each of one of these flights, as is a flight against one of
   /// several references: an entry is of the owner of its flight.

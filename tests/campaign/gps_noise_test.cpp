@@ -11,7 +11,7 @@ using namespace pcor::internal;
 TEST(GpsNoise, FindsTheNoiseOfThePressureInHeights) {
   constexpr Eigen::Index count = 3600;
   constexpr double thickness = 11.0;  // m/hPa
-  for (const double pressure_noise : {0.01, 0.06}) {
+  for (const double pressure_noise : {0.01, 0.06, 0.3}) {
     std::mt19937_64 engine(7);
     std::normal_distribution<double> normal;
     GpsRows rows;
