@@ -138,8 +138,10 @@ ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& 
   Series& static_pressure = *calm.find(Quantity::static_pressure);
   Series& dynamic_pressure = *calm.find(Quantity::dynamic_pressure);
   low_pass_angles(calm, samples.step);
-  for (const Quantity with_gusts : {Quantity::mach, Quantity::true_airspeed, Quantity::dynamic_pressure_rate,
-                                    Quantity::airspeed_rate, Quantity::recovery_temperature}) {
+  for (const Quantity with_gusts :
+       {Quantity::mach, Quantity::true_airspeed, Quantity::static_pressure_rate,
+        Quantity::dynamic_pressure_rate, Quantity::recovery_temperature_rate,
+        Quantity::ambient_temperature_rate, Quantity::airspeed_rate, Quantity::recovery_temperature}) {
     if (Series* const values = calm.find(with_gusts)) *values = low_passed(*values, 45.0 / samples.step);
   }
   for (std::size_t i = 0; i < airspeed.size(); ++i) {
