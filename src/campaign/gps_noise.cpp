@@ -7,6 +7,7 @@
 
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {

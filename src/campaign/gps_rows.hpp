@@ -81,7 +81,7 @@ struct AddedEffects {
 /// sideslip), each component. Height, m: GPS height minus height by the hydrostatic equation.
 ///
 /// The columns of the wind use pressures without gusts: V low-passed by a Gaussian of 45 s, its direction by
-/// one of 15 s; rates of change low-passed by 45 s, because the aircraft answers to gusts; flow angles and
+/// one of 15 s; rates of change low-passed by 45 s, because the aircraft responds to gusts; flow angles and
 /// other inputs of effects contain 87 % of an oscillation of 4 s and less of faster ones. In the columns of
 /// the height, the terms with the temperature and the rise use pressures low-passed by 15 s, because even a
 /// thousandth of the noise of pressure or GPS in them would appear as a temperature error of a few tenths of

@@ -52,7 +52,7 @@ class LatentFilter {
   /// Reads one row, `row` = `by` times the processes + noise of this variance, as number `number`.
   template <class Row>
   void read(Eigen::Index number, const Row& row, const States& by, double noise) {
-    // A row depends on some of the processes.
+    // A row may depend on only some of the processes; the others are skipped.
     States shared = States::Zero();
     change_ = row;
     for (Eigen::Index from = 0; from < count; ++from) {

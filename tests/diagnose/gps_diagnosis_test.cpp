@@ -99,11 +99,21 @@ TEST(GpsDiagnosis, HiddenEffectGainsMoreThanOthers) {
   }
 }
 
-// In pitch manoeuvres a late total pressure and a slow thermometer have errors of the same shape. The column
-// of total-lag was without these manoeuvres, that of temp-lag was not, and gained 24.
+// In pitch manoeuvres a late total pressure and a slow thermometer have errors of the same shape. The columns
+// of both effects are without fast rates of change; with fast rates temp-lag gains 24.
 TEST(GpsDiagnosis, ThermometerGainsNothingFromALateTotalPressure) {
   const std::string late = "\n[[effect]]\nid = \"total-lag\"\ntau = 0.2\n";
   EXPECT_LT(gains(two_hour_flight(41, late), true).at("temp-lag"), 13.0);
+}
+
+TEST(GpsDiagnosis, HeightsDetermineTheLagOfTheStaticLine) {
+  const std::string late = "\n[[effect]]\nid = \"static-lag\"\ntau = 0.3\n";
+  const pcor::Diagnosis diagnosis =
+      pcor::diagnose({two_hour_flight(42, late)}, laser_model(), references_of(true));
+  ASSERT_THAT(diagnosis.findings, testing::SizeIs(1));
+  EXPECT_EQ(diagnosis.findings[0].effect.id, "static-lag");
+  // Two to three standard errors; 10 % too large would be six.
+  EXPECT_NEAR(diagnosis.findings[0].estimates.front().value, 0.3, 0.015);
 }
 
 TEST(GpsDiagnosis, CompleteModelIsSilent) {
