@@ -139,30 +139,16 @@ WhiteRows white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const
   return rows.kind == GpsKind::wind ? white_wind(sizes, rows, more) : white_height(sizes, rows, more);
 }
 
-/// Minus the log likelihood of the sizes, with the priors, and what it follows from.
-struct Trial {
-  Eigen::VectorXd logarithms{};
-  WhiteRows white{};
-  Eigen::VectorXd coefficients{};  // most likely ones at these sizes
-  double cost = 0.0;               // up to a constant
-
-  /// Whitened residual after the fit of columns with these coefficients.
-  Eigen::VectorXd left(const Eigen::VectorXd& at) const {
-    const Eigen::Index count = at.size();
-    return white.rows.col(count) - white.rows.leftCols(count) * at;
-  }
-  /// Logarithms of the variances of the innovations; zero where a row has no value.
-  Eigen::ArrayXd log_variances() const {
-    return (white.variance.array() > 0.0).select(white.variance.array(), 1.0).log();
-  }
+/// Fit of the columns of whitened rows, with their prior.
+struct ColumnFit {
+  Eigen::VectorXd coefficients{};  // most likely ones
+  double deviance = 0.0;           // minus twice the log likelihood, up to a constant
 };
 
-Trial trial_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more,
-               const GpsPrior& prior) {
-  Trial trial{logarithms, white_at(logarithms, rows, more)};
-  const Eigen::Index count = trial.white.rows.cols() - 1;
+ColumnFit fit_of(const WhiteRows& white, const GpsPrior& prior) {
+  const Eigen::Index count = white.rows.cols() - 1;
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
-  products.selfadjointView<Eigen::Lower>().rankUpdate(trial.white.rows.transpose());
+  products.selfadjointView<Eigen::Lower>().rankUpdate(white.rows.transpose());
   products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
   // In units of the prior the matrix does not depend on the units of the columns.
   const Eigen::VectorXd& unit = prior.deviation;
@@ -172,9 +158,36 @@ Trial trial_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eig
   const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
   const Eigen::VectorXd best = factor.solve(right);
-  trial.coefficients = unit.cwiseProduct(best);
-  trial.cost = trial.white.log_determinant + products(count, count) + mean.squaredNorm() - right.dot(best) +
-               2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  return {unit.cwiseProduct(best), white.log_determinant + products(count, count) + mean.squaredNorm() -
+                                       right.dot(best) +
+                                       2.0 * factor.matrixLLT().diagonal().array().log().sum()};
+}
+
+/// Whitened residual after the fit of columns with these coefficients.
+Eigen::VectorXd left_of(const WhiteRows& white, const Eigen::VectorXd& coefficients) {
+  const Eigen::Index count = coefficients.size();
+  return white.rows.col(count) - white.rows.leftCols(count) * coefficients;
+}
+
+/// Minus the log likelihood of the sizes, with the priors, and what it follows from.
+struct Trial {
+  Eigen::VectorXd logarithms{};
+  WhiteRows white{};
+  Eigen::VectorXd coefficients{};  // most likely ones at these sizes
+  double cost = 0.0;               // up to a constant
+
+  /// Logarithms of the variances of the innovations; zero where a row has no value.
+  Eigen::ArrayXd log_variances() const {
+    return (white.variance.array() > 0.0).select(white.variance.array(), 1.0).log();
+  }
+};
+
+Trial trial_at(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more,
+               const GpsPrior& prior) {
+  Trial trial{logarithms, white_at(logarithms, rows, more)};
+  const ColumnFit fit = fit_of(trial.white, prior);
+  trial.coefficients = fit.coefficients;
+  trial.cost = fit.deviance;
   for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
     const Size& size = size_of(rows.kind, k);
     const double off = (logarithms[k] - std::log(size.median)) / size.deviation;
@@ -195,7 +208,7 @@ Slope slope_at(const Trial& trial, const GpsRows& rows, const Eigen::VectorXd& m
   constexpr double step = 1e-3;
   const Eigen::Index count = trial.logarithms.size();
   const Eigen::ArrayXd variances = trial.log_variances();
-  const Eigen::VectorXd left = trial.left(trial.coefficients);
+  const Eigen::VectorXd left = left_of(trial.white, trial.coefficients);
   Slope slope{Eigen::VectorXd(count), {}};
   Eigen::MatrixXd by_variance(left.size(), count);
   Eigen::MatrixXd by_mean(left.size(), count);  // innovations in units of their deviation
@@ -205,8 +218,8 @@ Slope slope_at(const Trial& trial, const GpsRows& rows, const Eigen::VectorXd& m
     const Trial beside = trial_at(moved, rows, more, prior);
     slope.gradient[k] = (beside.cost - trial.cost) / step;
     by_variance.col(k) = (beside.log_variances() - variances) / step;
-    by_mean.col(k) =
-        (beside.left(trial.coefficients) - left) / step + 0.5 * left.cwiseProduct(by_variance.col(k));
+    by_mean.col(k) = (left_of(beside.white, trial.coefficients) - left) / step +
+                     0.5 * left.cwiseProduct(by_variance.col(k));
   }
   slope.information = 0.5 * by_variance.transpose() * by_variance + by_mean.transpose() * by_mean;
   for (Eigen::Index k = 0; k < count; ++k)
@@ -239,11 +252,10 @@ void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const 
     // The information is that of small steps: no size changes by more than a factor of e.
     step /= std::max(1.0, step.cwiseAbs().maxCoeff());
     constexpr int max_halvings = 5;
-    Trial next;
-    double share = 1.0;
-    for (int halving = 0; halving <= max_halvings; ++halving, share *= 0.5) {
-      next = trial_at(trial.logarithms + share * step, rows, more, prior);
-      if (next.cost < trial.cost) break;
+    Trial next = trial_at(trial.logarithms + step, rows, more, prior);
+    for (int halving = 0; halving < max_halvings && !(next.cost < trial.cost); ++halving) {
+      step *= 0.5;
+      next = trial_at(trial.logarithms + step, rows, more, prior);
     }
     if (!(next.cost < trial.cost)) break;
     trial = std::move(next);
@@ -262,13 +274,7 @@ void widen(GpsPrior& prior, const WhiteRows& white) {
 bool find_outliers(const WhiteRows& white, const GpsPrior& prior, Eigen::VectorXd& more) {
   constexpr double limit = 4.5;
   constexpr double wider = 100.0;
-  const Eigen::Index count = white.rows.cols() - 1;
-  const auto columns = white.rows.leftCols(count);
-  Eigen::MatrixXd matrix = columns.transpose() * columns;
-  matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
-  const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count) +
-                                                   prior.mean.cwiseQuotient(prior.deviation.cwiseAbs2()));
-  const Eigen::VectorXd news = white.rows.col(count) - columns * best;
+  const Eigen::VectorXd news = left_of(white, fit_of(white, prior).coefficients);
   bool any = false;
   for (Eigen::Index i = 0; i < news.size(); ++i) {
     if (!(std::abs(news[i]) > limit)) continue;

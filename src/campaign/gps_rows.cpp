@@ -138,12 +138,13 @@ ModelSamples without_gusts(const FlightSamples& samples, const ModelDefinition& 
   Series& static_pressure = *calm.find(Quantity::static_pressure);
   Series& dynamic_pressure = *calm.find(Quantity::dynamic_pressure);
   low_pass_angles(calm, samples.step);
-  for (const Quantity with_gusts :
-       {Quantity::mach, Quantity::true_airspeed, Quantity::static_pressure_rate,
-        Quantity::dynamic_pressure_rate, Quantity::recovery_temperature_rate,
-        Quantity::ambient_temperature_rate, Quantity::airspeed_rate, Quantity::recovery_temperature}) {
+  const auto low_pass = [&](Quantity with_gusts) {
     if (Series* const values = calm.find(with_gusts)) *values = low_passed(*values, 45.0 / samples.step);
-  }
+  };
+  for (const Quantity with_gusts :
+       {Quantity::mach, Quantity::true_airspeed, Quantity::airspeed_rate, Quantity::recovery_temperature})
+    low_pass(with_gusts);
+  for (const Rate& each : rates) low_pass(each.rate);
   for (std::size_t i = 0; i < airspeed.size(); ++i) {
     if (std::isnan(airspeed[i])) continue;
     const double heating = heating_at(air, i, airspeed[i]);
