@@ -206,13 +206,11 @@ class ForwardSelection {
     double sum = 0.0;
     for (const std::size_t k : tested) sum += alternatives_[index][k].probability;
     const std::vector<TrialFlight> tried = loop_.try_models(models);
-    const std::vector<double> without = static_pressures_of(tried, 0);
     std::vector<std::vector<double>> changes;
     std::vector<double> weights;
     for (std::size_t i = 0; i < tested.size(); ++i) {
       weights.push_back(alternatives_[index][tested[i]].probability / sum);
-      std::vector<double>& change = changes.emplace_back(static_pressures_of(tried, i + 1));
-      for (std::size_t sample = 0; sample < change.size(); ++sample) change[sample] -= without[sample];
+      changes.push_back(static_changes_of(tried, 0, i + 1));
     }
     const double matters = negligible * step.noise_rms;
     const RivalChoice choice = choose_rival(changes, weights, matters);

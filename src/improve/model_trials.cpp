@@ -191,13 +191,15 @@ TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size
   return result;
 }
 
-std::vector<double> static_pressures_of(const std::vector<TrialFlight>& flights, std::size_t model) {
-  std::vector<double> pressures;
+std::vector<double> static_changes_of(const std::vector<TrialFlight>& flights, std::size_t before,
+                                      std::size_t after) {
+  std::vector<double> changes;
   for (const TrialFlight& flight : flights) {
     if (!flight.first_reference) continue;
-    for (const std::size_t i : flight.fitted) pressures.push_back(flight.static_pressures[model][i]);
+    for (const std::size_t i : flight.fitted)
+      changes.push_back(flight.static_pressures[after][i] - flight.static_pressures[before][i]);
   }
-  return pressures;
+  return changes;
 }
 
 }  // namespace pcor::internal

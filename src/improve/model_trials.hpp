@@ -83,7 +83,9 @@ struct TrialComparison {
 TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
                               bool held_out);
 
-/// Corrected static pressures of a model at the samples of the fit, hPa, in the order of the flights.
-std::vector<double> static_pressures_of(const std::vector<TrialFlight>& flights, std::size_t model);
+/// Changes of the corrected static pressure from model `before` to model `after` at the samples of the fit,
+/// hPa, in the order of the flights.
+std::vector<double> static_changes_of(const std::vector<TrialFlight>& flights, std::size_t before,
+                                      std::size_t after);
 
 }  // namespace pcor::internal

@@ -97,10 +97,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
   TrialModel fitted = models[1];
   fitted.file = fitted_coefficients(flights, models[1].file, references, of_all, surfaces);
   const std::vector<TrialFlight> tried = try_models(flights, {model, fitted}, references, options);
-  std::vector<double> changes = static_pressures_of(tried, 1);
-  const std::vector<double> before = static_pressures_of(tried, 0);
-  for (std::size_t i = 0; i < changes.size(); ++i) changes[i] -= before[i];
-  offer.static_change = square_sum_of(changes).rms();
+  offer.static_change = square_sum_of(static_changes_of(tried, 0, 1)).rms();
   offer.may_be_of_reference = !options.trust_reference &&
                               std::none_of(references.begin(), references.end(),
                                            [](const auto& reference) { return reference->reads_laser(); });
