@@ -264,7 +264,9 @@ TEST_F(CheckTest, LayersDetectStaticLineLag) {
   }
 }
 
-TEST_F(CheckTest, EighteenPairsReachTheStandardErrorOfTheMemo) {
+class CheckStudy : public CheckTest {};
+
+TEST_F(CheckStudy, EighteenPairsReachTheStandardErrorOfTheMemo) {
   // "18 pairs: +0.6 +- 0.2 m/s" (the memo's GV). Four flights with 18 pairs each determine the scatter of a
   // pair to 8 %.
   const std::string text = head + aloft + repeated(leg("reverse-heading", "speed = 118"), 18);

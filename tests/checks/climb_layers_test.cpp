@@ -334,7 +334,7 @@ TEST(LayerErrors, PressureGradientIsEstimatedFromLevelLegs) {
 
 // Simulated flights
 
-TEST(LayersOfSimulatedFlights, DifferFromTheTruthByTheirErrors) {
+TEST(LayersStudy, DifferFromTheTruthByTheirErrors) {
   std::vector<double> scores;
   for (const FlightAir& air : flights()) {
     const FlightLayers found = find_layers(air, exact_law());

@@ -68,7 +68,7 @@ void expect_right(const Nuisance& nuisance, const std::string& what) {
 
 }  // namespace
 
-TEST(RedundantFit, ErrorsIncludeDrift) {
+TEST(RedundantFitStudy, ErrorsIncludeDrift) {
   expect_right({}, "nothing");
   expect_right({0.15, 900.0}, "0.15 hPa, 900 s");
   expect_right({0.4, 3600.0}, "0.4 hPa, 3600 s");

@@ -613,7 +613,7 @@ TEST(Advice, ComesFromTheCatalogueIfNoFlownRegimeHelps) {
 
 // Four more yaw manoeuvres are predicted to separate the ports from the laser in about nine of ten flights,
 // and do.
-TEST(Advice, FollowedAdviceSeparatesTheEffects) {
+TEST(AdviceStudy, FollowedAdviceSeparatesTheEffects) {
   const std::string effect = "id = \"static-beta-odd\"\nb1 = -0.003\n";
   const std::string yaw = "[[leg]]\nkind = \"yaw\"\ncycles = 12\n\n";
   int followed = 0;

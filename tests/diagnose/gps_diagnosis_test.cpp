@@ -64,7 +64,7 @@ std::map<std::string, double> gains(const std::filesystem::path& path, bool with
 
 }  // namespace
 
-TEST(GpsDiagnosis, GainsWithoutAnEffectAreInsignificant) {
+TEST(GpsDiagnosisStudy, GainsWithoutAnEffectAreInsignificant) {
   for (const bool with_height : {false, true}) {
     double sum = 0.0;
     double count = 0.0;

@@ -129,7 +129,7 @@ TEST(Recovery, Equation20WithRawMachIsReportedCollinear) {
 
 // The noise of the laser must not pass for an effect before it: least squares of delta-p itself would find a
 // recovery factor of 0.2 less in every flight, at 12 standard errors.
-TEST(Recovery, EffectsBeforeTheLaserGiveNoFalseFinding) {
+TEST(RecoveryStudy, EffectsBeforeTheLaserGiveNoFalseFinding) {
   const pcor::test::TemporaryDirectory directory;
   pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-eq18.toml");
   pcor::ModelDefinition model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");

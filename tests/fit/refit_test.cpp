@@ -138,7 +138,7 @@ TEST(Refit, LinearModelGivesLeastSquares) {
   EXPECT_NEAR(found.at("static-qp.a2").value, expected[2], 2e-8);
 }
 
-TEST(Refit, StatesItsErrors) {
+TEST(RefitStudy, StatesItsErrors) {
   // 200 flights: the spread of a coefficient is known to 5 %, and the mean of its stated error better; 20 %
   // is four times that. A formula for white noise would underestimate correlated noise 2.4 times.
   std::map<std::string, std::vector<double>> scores;

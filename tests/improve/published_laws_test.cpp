@@ -62,9 +62,16 @@ TEST_P(PublishedLaw, EveryCommandAcceptsAFlightWithAllVariables) {
     EXPECT_THAT(comparison.models.front().all.samples, Gt(500U)) << reference->name();
   }
   EXPECT_THAT(refit(flight, file, {pressure}).samples, Gt(500U));
+  EXPECT_THAT(diagnose(flight, file, {laser}).candidates, Gt(10U));
+}
+
+class PublishedLawStudy : public PublishedLaw {};
+
+TEST_P(PublishedLawStudy, ImproveAcceptsAFlightWithAllVariables) {
   ImproveOptions once;
   once.max_steps = 1;
-  const Improvement improvement = improve(flight, file, {laser}, once);
+  const Improvement improvement =
+      improve(FlightSet{test::short_flight()}, read_law(GetParam()), {lams_reference()}, once);
   EXPECT_THAT(improvement.fit.samples, Gt(500U));
   ASSERT_THAT(improvement.steps, Not(IsEmpty()));
   EXPECT_THAT(improvement.steps.front().diagnosis.candidates, Gt(10U));
@@ -79,8 +86,12 @@ TEST(Laws, PressureReferenceRequiresNoThermometer) {
   EXPECT_THAT(diagnose({test::short_flight()}, file, {reference}).candidates, Gt(10U));
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()),
-                         [](const auto& each) { return test::test_name(each.param.stem().string()); });
+std::string name_of(const testing::TestParamInfo<std::filesystem::path>& law) {
+  return test::test_name(law.param.stem().string());
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), name_of);
+INSTANTIATE_TEST_SUITE_P(Data, PublishedLawStudy, testing::ValuesIn(laws()), name_of);
 
 }  // namespace
 }  // namespace pcor

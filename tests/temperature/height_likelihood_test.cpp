@@ -222,7 +222,7 @@ Eigen::MatrixXd sampled_covariance(const std::vector<HeightRecord>& records, Eig
   return (covariances + squares - sum * sum.transpose() / samples) / samples;
 }
 
-TEST(HeightLikelihood, ErrorsIncludeNoiseUncertainty) {
+TEST(HeightLikelihoodStudy, ErrorsIncludeNoiseUncertainty) {
   constexpr std::size_t flights = 4;
   std::array<double, 2> apart{};
   for (const HeightRecord& record : noisy_records(flights, 7200)) {

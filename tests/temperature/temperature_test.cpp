@@ -191,10 +191,10 @@ Scenario::Effect effect(const std::string& id, const std::map<std::string, doubl
   return {id, "", parameters};
 }
 
-class TemperatureRecovery : public Temperature {};
+class TemperatureStudy : public Temperature {};
 
 /// The stated errors include the usual error of the humidity: flights on which it is drawn from its prior.
-TEST_F(TemperatureRecovery, RecoversOffsetAndSlopeOverSlopingIsobars) {
+TEST_F(TemperatureStudy, RecoversOffsetAndSlopeOverSlopingIsobars) {
   std::array<Scores, 2> likelihood;
   std::array<Scores, 2> least_squares;
   std::mt19937_64 engine(1);
@@ -244,7 +244,7 @@ TEST_F(TemperatureRecovery, RecoversOffsetAndSlopeOverSlopingIsobars) {
 
 /// The default errors include the usual errors of pressures and humidity: flights on which each has an error
 /// drawn from its prior, the law by 0.3 hPa in each of its terms.
-TEST_F(TemperatureRecovery, StatedErrorsHoldWithUsualSensorErrors) {
+TEST_F(TemperatureStudy, StatedErrorsHoldWithUsualSensorErrors) {
   Scores scores;
   std::size_t insignificant = 0;
   std::mt19937_64 engine(1);
@@ -515,7 +515,7 @@ TEST_F(Temperature, SmallGainAddsNoCoefficient) {
 
 // Slopes of isobars
 
-TEST_F(Temperature, StatedErrorsCoverAnEstimatedSlope) {
+TEST_F(TemperatureStudy, StatedErrorsCoverAnEstimatedSlope) {
   // 8 normal scores have an rms of more than 1.7 once in 300 times.
   double squares = 0.0;
   constexpr std::uint64_t flights = 8;

@@ -22,6 +22,7 @@ import numpy
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import ONE, PUBLISHED, SCENARIO, ComparisonTest  # noqa: E402
+from long_tests import in_long_tests  # noqa: E402
 from tool_test import TOOL  # noqa: E402
 
 setUpModule, tearDownModule = comparison_test.setUpModule, comparison_test.tearDownModule
@@ -395,21 +396,7 @@ class Inspect(ChangedTest):
         seconds[:] = range(4)
         return flight
 
-    def seconds(self, variables):
-        """Processor time, which the load of the machine hardly changes."""
-        path = self.path / f"{variables}.nc"
-        with self.flight_of_four_seconds(path) as flight:
-            for number in range(variables):
-                flight.createVariable(f"V{number}", "f4", ("Time",)).units = "hPa"
-        begin = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.done("inspect", path, "--json", "-")
-        end = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return end.ru_utime + end.ru_stime - begin.ru_utime - begin.ru_stime
-
-    def test_many_variables_take_linear_time(self):
-        few, many = min(self.seconds(2500) for _ in range(2)), self.seconds(10000)
-        self.assertLess(many, 2 * 4 * few)  # a quadratic time would be 16 times that of few
-
+    @in_long_tests
     def test_a_link_to_a_pipe_does_not_hang(self):
         library = ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5")
         if library is None:

@@ -25,6 +25,7 @@ import netCDF4
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 sys.path.append(str(Path(sys.argv[2]).resolve() / "tests/hostile"))
 from damaged_flights import cut_flight, damaged_heaps  # noqa: E402
+from long_tests import in_long_tests  # noqa: E402
 
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
@@ -179,6 +180,7 @@ class Unreadable(ManyFlightsTest):
         self.assertEqual(self.states([b, a], "--skip-unreadable"), {"b.nc": "unreadable", "a.nc": "processed"})
 
     @unittest.skipIf(os.environ.get("PCOR_SANITIZED"), "a sanitizer reports invalid reads in HDF5")
+    @in_long_tests
     def test_a_file_that_crashes_hdf5_is_named(self):
         model = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
         a, b, whole = (self.path / name for name in ("a.nc", "b.nc", "whole.nc"))
@@ -297,11 +299,10 @@ class OpenFiles(ManyFlightsTest):
         def few_files():
             resource.setrlimit(resource.RLIMIT_NOFILE, (24, 24))
 
-        for command in (["compare"], ["refit", "-o", self.path / "fitted.toml", "--force"], ["inspect"]):
+        for command in (["refit", "-o", self.path / "fitted.toml", "--force"], ["inspect"]):
             model = [] if command == ["inspect"] else ["-m", SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"]
             result = self.run_tool(*command, *flights, *model, preexec_fn=few_files)
             self.assertEqual(result.returncode, 0, result.stderr)
-
 
     def test_skip_unreadable_excludes_unreadable_flights(self):
         flight = self.path / "0.nc"

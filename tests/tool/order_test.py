@@ -14,6 +14,7 @@ import unittest
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ONE, OTHER_SYSTEM, TWO, ComparisonTest, with_a0  # noqa: E402
+from long_tests import in_long_tests  # noqa: E402
 from tool_test import SOURCE, TOOL, replace  # noqa: E402
 
 THREE, CLIMBS = FLIGHTS / "three.nc", FLIGHTS / "climbs.nc"
@@ -125,6 +126,7 @@ class Order(ComparisonTest):
                                                  comparison_test.MODEL), name="without.toml")
         return self.model(), shifted, without
 
+    @in_long_tests
     def test_order_of_option_values_does_not_change_results(self):
         for (command, option), (values, change) in CASES.items():
             with self.subTest(command=command, option=option):

@@ -17,6 +17,7 @@ import unittest
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ComparisonTest, with_effect  # noqa: E402
+from long_tests import in_long_tests  # noqa: E402
 from tool_test import SOURCE, TOOL  # noqa: E402
 
 sys.path.insert(0, str(SOURCE / "tests/report"))
@@ -197,6 +198,7 @@ class OneEffect(WhatIfTest):
         clipped = self.value("pcorReport.whatIf.rows.flatMap(({sliders}) => sliders.map(({number}) => number.scrollWidth - number.clientWidth))")
         self.assertLessEqual(max(clipped), 0)
 
+    @in_long_tests
     def test_keys_move_a_slider_and_undo_restores_it(self):
         self.diagnosed(FIRST, SECOND)
         self.switch("static-lag")
