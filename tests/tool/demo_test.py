@@ -11,6 +11,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from long_tests import in_long_tests  # noqa: E402
+
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 FLIGHTS = sorted(Path(os.environ["PCOR_FLIGHTS"]).glob("*.nc"), key=os.path.getsize) if os.environ.get("PCOR_FLIGHTS") else []
@@ -30,6 +33,7 @@ class Demo(unittest.TestCase):
         self.assertLess(result.stdout.count("\n"), 65)
         return result.stdout
 
+    @in_long_tests  # continuous integration runs this demo as its first step
     def test_without_a_flight_the_first_line_announces_a_simulation(self):
         output = self.run_demo("")
         self.assertIn("simulated", output.splitlines()[0])
