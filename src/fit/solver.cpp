@@ -1,6 +1,7 @@
 #include "fit/solver.hpp"
 
 #include <ceres/cost_function.h>
+#include <ceres/iteration_callback.h>
 #include <ceres/normal_prior.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -114,6 +115,23 @@ class ReducedCost final : public ceres::CostFunction {
  private:
   Reduce reduce_;
   Eigen::Index size_;
+};
+
+/// Stops at a kink of the loss, as at saturation, which limits the humidity of many samples: there the derivatives
+/// no longer predict the decrease of the loss, and steps become shorter without end.
+class StopAtKink final : public ceres::IterationCallback {
+ public:
+  explicit StopAtKink(double deviation) : negligible_(0.5 * 0.01 * 0.01 * deviation * deviation) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
+    constexpr double min_predicted = 0.25;  // share of the predicted decrease
+    const bool is_kink = step.iteration > 0 && step.step_is_successful &&
+                         step.relative_decrease < min_predicted && step.cost_change < negligible_;
+    return is_kink ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double negligible_;  ///< decrease by a hundredth of a standard error of one coefficient
 };
 
 /// The unknowns are the free parameters.
@@ -328,6 +346,8 @@ class Solver {
     options.parameter_tolerance = 1e-9;
     options.gradient_tolerance = 1e-14;
     options.logging_type = ceres::SILENT;
+    StopAtKink stop(solution_.deviation);
+    options.callbacks.push_back(&stop);
     ceres::Solver::Summary summary;
     {
       const QuietLog quiet;
