@@ -1,4 +1,4 @@
-#include "regimes/search.hpp"
+#include "regimes/regime_search.hpp"
 
 #include <fmt/format.h>
 

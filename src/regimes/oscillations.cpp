@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "regimes/search.hpp"
+#include "regimes/regime_search.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -97,7 +97,7 @@ Run whole_swings(const std::vector<double>& values, Run run, double amplitude, s
 }
 
 // Cells in flight without net climb.
-std::vector<bool> about_level(const Search& search) {
+std::vector<bool> about_level(const RegimeSearch& search) {
   const std::vector<double> climb =
       smoothed_twice(search.cells.vertical_speed, cells_in(search.criteria.climb_smoothing));
   std::vector<bool> level(search.flying);
@@ -109,7 +109,7 @@ std::vector<bool> about_level(const Search& search) {
 
 // Adds the oscillations of an angle with level wings, during which `moves` holds for the aircraft.
 template <class Moves>
-void add_oscillations(Search& search, Regime regime, const std::vector<double>& angle,
+void add_oscillations(RegimeSearch& search, Regime regime, const std::vector<double>& angle,
                       const std::vector<bool>& usable, const Band& band, const Moves& moves) {
   std::vector<double> tilt = search.cells.roll;
   for (double& roll : tilt) roll = std::abs(roll);
@@ -134,7 +134,7 @@ void add_oscillations(Search& search, Regime regime, const std::vector<double>& 
 
 }  // namespace
 
-void find_pitch_manoeuvres(Search& search) {
+void find_pitch_manoeuvres(RegimeSearch& search) {
   const RegimeCriteria& criteria = search.criteria;
   if (!has_value(search.cells.pitch)) return;
   const Band band{criteria.pitch_variance, criteria.pitch_time, cells_in(criteria.pitch_shortest_period),
@@ -146,7 +146,7 @@ void find_pitch_manoeuvres(Search& search) {
                    [&](Run run) { return !(std::sqrt(mean(squares, run)) < criteria.pitch_vertical_speed); });
 }
 
-void find_yaw_manoeuvres(Search& search) {
+void find_yaw_manoeuvres(RegimeSearch& search) {
   const RegimeCriteria& criteria = search.criteria;
   if (!has_value(search.cells.sideslip)) return;
   const Band band{criteria.yaw_variance, criteria.yaw_time, cells_in(criteria.yaw_shortest_period),

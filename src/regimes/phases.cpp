@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "regimes/search.hpp"
+#include "regimes/regime_search.hpp"
 
 namespace pcor::internal {
 namespace {

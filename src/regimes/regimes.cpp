@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "regimes/search.hpp"
+#include "regimes/regime_search.hpp"
 
 namespace pcor {
 
@@ -11,7 +11,7 @@ using namespace internal;
 
 namespace {
 
-void find_clouds(Search& search) {
+void find_clouds(RegimeSearch& search) {
   const std::vector<Run> wet = runs_where(search.cells.count(), [&](std::size_t i) {
     return search.flying[i] && search.cells.liquid_water[i] >= search.criteria.cloud_liquid_water;
   });
@@ -20,7 +20,7 @@ void find_clouds(Search& search) {
 
 }  // namespace
 
-void Search::add(Regime regime, Run run, const std::string& note, int pair) {
+void RegimeSearch::add(Regime regime, Run run, const std::string& note, int pair) {
   found.push_back({regime, cells.begin[run.first], cells.begin[run.end], pair, note});
   for (std::size_t i = run.first; i < run.end; ++i) unassigned[i] = false;
 }
@@ -36,7 +36,7 @@ std::vector<Interval> find_regimes(const FlightMotion& motion, const RegimeCrite
   const std::vector<Regime> phases = phases_of(cells, criteria);
   std::vector<bool> flying;
   for (const Regime phase : phases) flying.push_back(phase != Regime::ground && phase != Regime::take_off);
-  Search search{cells, criteria, flying, flying};
+  RegimeSearch search{cells, criteria, flying, flying};
   find_pitch_manoeuvres(search);
   find_yaw_manoeuvres(search);
   find_speed_runs(search);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "regimes/search.hpp"
+#include "regimes/regime_search.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -23,7 +23,7 @@ Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCrit
 
 }  // namespace
 
-void find_speed_runs(Search& search) {
+void find_speed_runs(RegimeSearch& search) {
   const Cells& cells = search.cells;
   const RegimeCriteria& criteria = search.criteria;
   const std::vector<bool>& flying = search.flying;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "regimes/search.hpp"
+#include "regimes/regime_search.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -25,7 +25,7 @@ double heading_change(const Cells& cells, Run run) {
 }
 
 // Turns with a roll beyond `minimum` deg to one side.
-std::vector<Turn> turns_beyond(double minimum, const Search& search) {
+std::vector<Turn> turns_beyond(double minimum, const RegimeSearch& search) {
   const std::vector<double> roll = running_mean(search.cells.roll, roll_smoothing);
   std::vector<Turn> turns;
   for (const double sign : {-1.0, 1.0}) {
@@ -47,7 +47,7 @@ double standard_deviation(const std::vector<double>& values, Run run) {
 
 }  // namespace
 
-void find_turns(Search& search) {
+void find_turns(RegimeSearch& search) {
   for (const auto& [run, side, change] : turns_beyond(search.criteria.turn_roll, search)) {
     std::string note = side;
     if (!std::isnan(change)) note += fmt::format(", {:.0f} deg", std::abs(change));
@@ -55,7 +55,7 @@ void find_turns(Search& search) {
   }
 }
 
-void find_circles(Search& search) {
+void find_circles(RegimeSearch& search) {
   const std::vector<double>& roll = search.cells.roll;
   for (const auto& [run, side, change] : turns_beyond(search.criteria.circle_roll, search)) {
     if (!(change >= search.criteria.circle_heading)) continue;
@@ -65,7 +65,7 @@ void find_circles(Search& search) {
   }
 }
 
-void find_reverse_headings(Search& search) {
+void find_reverse_headings(RegimeSearch& search) {
   const Cells& cells = search.cells;
   const RegimeCriteria& criteria = search.criteria;
   const std::vector<double> roll = running_mean(cells.roll, straight_smoothing);

@@ -3,8 +3,8 @@
 
 Every folder of include/pcor, src and tests is a module of layers.txt or a workshop (tests of the whole); a module includes
 modules of lower layers and itself; no files include each other in a circle; a header of src, which is not installed, is
-included by no installed one and keeps its names in pcor::internal; no include climbs through ".."; and one file of src
-calls the netCDF C library.
+included by no installed one and keeps its names in pcor::internal; no include climbs through ".."; no two headers define one type;
+and one file of src calls the netCDF C library.
 docs/architecture.md describes the same modules.
 """
 import pathlib
@@ -16,6 +16,7 @@ layers = [line.split() for line in (root / "tests/architecture/layers.txt").read
 layer_of = {module: number for number, layer in enumerate(layers) for module in layer}
 workshops = {"clients", "foreign", "fuzz", "hidden", "hostile", "package", "python", "real", "architecture", "support", "tool"}  # tests of no single module
 trouble = []
+types = {}  # first header that defines a type, by namespace and name
 
 
 def sources(folder):
@@ -45,6 +46,12 @@ for folder in ("include", "src", "tests", "tools", "benchmarks"):
             trouble.append(f"{where}: calls the netCDF C library; use netcdf-cxx4, and what that lacks from flight/netcdf_c.hpp")
         if folder == "include" and any(each.startswith("pcor::internal") for each in opens):
             trouble.append(f"{where}: an installed header has names in pcor::internal")
+
+        if folder in ("include", "src") and path.suffix == ".hpp":
+            for type_name in re.findall(r"^(?:class|struct) (\w+)(?: final)?(?: :[^:][^;{]*)? \{", text, re.MULTILINE):
+                first = types.setdefault((*opens, type_name), where)
+                if first != where:
+                    trouble.append(f"{where}: {'::'.join(opens)}::{type_name} is also a type of {first}; the linker keeps one of them")
 
 for folder in ("include/pcor", "src", "tests"):
     for child in sorted((root / folder).iterdir()):

@@ -34,7 +34,7 @@ struct Cells {
 Cells cells_of(const FlightMotion& motion);
 
 /// Search for the regimes of a flight.
-struct Search {
+struct RegimeSearch {
   Cells cells;
   RegimeCriteria criteria;
   std::vector<bool> flying;       ///< cells that are searched for manoeuvres: airborne, or with unknown phase
@@ -47,14 +47,14 @@ struct Search {
 /// Phase of each cell; `Regime::count` if unknown.
 std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria);
 
-void find_turns(Search& search);
-void find_circles(Search& search);
-void find_pitch_manoeuvres(Search& search);
-void find_yaw_manoeuvres(Search& search);
-void find_speed_runs(Search& search);
+void find_turns(RegimeSearch& search);
+void find_circles(RegimeSearch& search);
+void find_pitch_manoeuvres(RegimeSearch& search);
+void find_yaw_manoeuvres(RegimeSearch& search);
+void find_speed_runs(RegimeSearch& search);
 
 /// The legs contain only cells outside the regimes that were found before.
-void find_reverse_headings(Search& search);
+void find_reverse_headings(RegimeSearch& search);
 
 /// Duration as a number of cells.
 inline std::size_t cells_in(double seconds) { return static_cast<std::size_t>(std::lround(seconds)); }
