@@ -15,8 +15,9 @@ namespace {
 constexpr double larger = 1.02;
 constexpr double larger_elsewhere =
     1.05;  // a fit of half a flight may be a few per cent worse on the rest by chance
-constexpr double max_chance = 30.0;     // s of consecutive outliers; spikes and gusts are shorter
-constexpr double many_outliers = 0.05;  // fraction of all samples
+constexpr double more_than_any_defect = 10.0;  // hPa; static defects of aircraft are 1 to 6 hPa
+constexpr double max_chance = 30.0;            // s of consecutive outliers; spikes and gusts are shorter
+constexpr double many_outliers = 0.05;         // fraction of all samples
 
 }  // namespace
 
@@ -26,6 +27,12 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
         "the rms of the fitted samples increases from {:.3f} hPa with the input model to {:.3f} hPa with the "
         "fit",
         result.rms_before, result.rms);
+  }
+  if (result.defect_error > more_than_any_defect) {
+    return fmt::format(
+        "the standard error of delta-p is {:.0f} hPa, so these flights do not determine the model; hold "
+        "coefficients with --fix, or give a laser or a second system as a further reference",
+        result.defect_error);
   }
   const std::optional<HeldOutPart> held_out = worst_held_out(result.flights);
   if (held_out && held_out->is_off()) return held_out->text();

@@ -10,7 +10,7 @@ namespace pcor::internal {
 /// Reason not to use the fitted model, a sentence without full stop: its residuals exceed those with the
 /// input model by more than 2 % on fitted samples (both rms and robust deviation, since a robust
 /// fit may increase outliers) or by more than 5 % on a held-out part, or the bias of a held-out part exceeds
-/// the expectation of the fit. Empty otherwise.
+/// the expectation of the fit, or by GPS the standard error of delta-p exceeds 10 hPa. Empty otherwise.
 /// @param bulk_rms_before robust deviation with the input model, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
