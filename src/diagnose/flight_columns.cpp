@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "campaign/gps_rows.hpp"
 #include "diagnose/shape_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -228,6 +229,8 @@ std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Ca
   const bool differences_alone =
       std::all_of(set.references.begin(), set.references.end(),
                   [](const auto& reference) { return reference->model() != nullptr; });
+  const bool is_by_gps = std::all_of(set.references.begin(), set.references.end(),
+                                     [](const auto& reference) { return gps_kind(*reference).has_value(); });
   std::vector<ColumnGroup> groups;
   Eigen::Index first = 0;
   std::map<std::string, std::size_t> effects;
@@ -242,7 +245,12 @@ std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Ca
     group.count = as_index(candidate.tested.size());
     group.has_uncertain_shape = has_uncertain_shape(candidate.effect);
     for (const CandidateParameter& parameter : candidate.tested) {
-      group.bounds.push_back(parameter.bounds);
+      Bounds& bounds = group.bounds.emplace_back(parameter.bounds);
+      if (is_by_gps && parameter.typical != 0.0) {
+        // Variations of the atmosphere are more likely than an effect beyond the widest prior.
+        const double largest = widest_prior * std::abs(parameter.typical);
+        bounds = {std::max(bounds.lower, -largest), std::min(bounds.upper, largest)};
+      }
       group.usual.push_back(parameter.typical);
     }
     first += group.count;

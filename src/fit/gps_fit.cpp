@@ -346,7 +346,7 @@ class GpsSolver {
     Eigen::MatrixXd by_noise = level * posterior_.topLeftCorner(count_, count_) * level.transpose();
     const Eigen::MatrixXd by_scatter = level * sandwich.topLeftCorner(count_, count_) * level.transpose();
     covariance_.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
-    Eigen::MatrixXd stated = error_of(by_scatter) > error_of(by_noise) ? by_scatter : by_noise;
+    Eigen::MatrixXd stated = larger_covariance(by_noise, by_scatter);
     determined_ = error_of(stated);
     const Eigen::MatrixXd by_fixed = level * (kept * carried_ - (posterior_ * by_fixed_).topRows(count_));
     by_noise += covariance_by_fixed(by_fixed);

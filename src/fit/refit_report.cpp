@@ -39,8 +39,8 @@ ReportTable coefficient_table(const RefitResult& fit) {
     table.caption =
         "Likelihood: standard error by the likelihood of the GPS references; jackknife: from leaving out one "
         "flight or one part of a flight at a time (inf: one alone determines the coefficient). Stated error: "
-        "the one of these two with the larger error of delta-p; a combination of coefficients that the "
-        "flights do not determine adds its error before the fit. Unit 1: a ratio, such as hPa/hPa.";
+        "the larger one for each combination of coefficients; a combination that the flights do not "
+        "determine adds its error before the fit. Unit 1: a ratio, such as hPa/hPa.";
     table.headers[3] = "stated error";
     table.headers.insert(table.headers.begin() + 4, "likelihood");
   }

@@ -29,6 +29,16 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
          eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
+Eigen::MatrixXd larger_covariance(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+  // With R R' = one + other, the parts R^-1 one R'^-1 and R^-1 other R'^-1 add up to one: same eigenvectors.
+  const Eigen::MatrixXd root = covariance_root(one + other);
+  const Eigen::MatrixXd inverse = pseudo_inverse(root);
+  const SymmetricEigen part(inverse * one * inverse.transpose());
+  const Eigen::MatrixXd axes = root * part.eigenvectors();
+  const Eigen::VectorXd larger = part.eigenvalues().cwiseMax((1.0 - part.eigenvalues().array()).matrix());
+  return axes * larger.asDiagonal() * axes.transpose();
+}
+
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
 }

@@ -27,6 +27,10 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 /// deviations, times the symmetric root of the correlations. Rows of unknowns without a variance are zero.
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance);
 
+/// The larger of two covariances of the same unknowns along each of their common principal axes: those in
+/// which both are diagonal.
+Eigen::MatrixXd larger_covariance(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other);
+
 /// The singular values, descending.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
 

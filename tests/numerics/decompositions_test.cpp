@@ -34,5 +34,28 @@ TEST(CovarianceRoot, SquareIsTheCovarianceForUnknownsInAnyUnits) {
   EXPECT_TRUE(((root * root.transpose() - covariance).array().abs() <= allowed.array()).all());
 }
 
+TEST(LargerCovariance, IsTheLargerOneAlongEachAxis) {
+  // Independent unknowns in different units: the larger variance of each; without a variance: zero.
+  const Eigen::Vector4d one{4.0, 1e-12, 0.0, 9.0};
+  const Eigen::Vector4d other{1.0, 9e-12, 0.0, 9.0};
+  const Eigen::MatrixXd larger = larger_covariance(one.asDiagonal(), other.asDiagonal());
+  const Eigen::MatrixXd expected = one.cwiseMax(other).asDiagonal();
+  const Eigen::VectorXd scale = expected.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd allowed = 1e-13 * scale * scale.transpose();  // rounding, of the standard deviations
+  EXPECT_TRUE(((larger - expected).array().abs() <= allowed.array()).all());
+}
+
+TEST(LargerCovariance, ExceedsBothAndNotTheirSum) {
+  const Eigen::MatrixXd any = symmetric(4, 5);
+  const Eigen::MatrixXd other = symmetric(4, 6);
+  const Eigen::MatrixXd a = any * any;
+  const Eigen::MatrixXd b = other * other;
+  const Eigen::MatrixXd larger = larger_covariance(a, b);
+  for (const Eigen::MatrixXd& excess :
+       {Eigen::MatrixXd(larger - a), Eigen::MatrixXd(larger - b), Eigen::MatrixXd(a + b - larger)})
+    EXPECT_GT(symmetric_eigenvalues(excess).minCoeff(), -1e-12) << "rounding of elements near 10";
+  EXPECT_TRUE(larger_covariance(a, 4.0 * a).isApprox(4.0 * a, 1e-12));
+}
+
 }  // namespace
 }  // namespace pcor::internal

@@ -171,8 +171,9 @@ inline constexpr std::string_view refit_estimator =
     "drift and from the misfit of the law.";
 inline constexpr std::string_view refit_estimator_of_gps =
     "Coefficients by maximum likelihood, with winds, D-value and errors of GPS and instruments as random "
-    "processes; errors from that likelihood or from the scatter of blocks of five minutes: the one with the "
-    "larger error of delta-p.";
+    "processes; errors from that likelihood or from the scatter of blocks of five minutes: the larger one "
+    "for "
+    "each combination of coefficients.";
 
 struct RefitResult {
   ModelDefinition model;  ///< fitted model with coefficients, standard errors, covariance and provenance
@@ -215,8 +216,8 @@ struct RefitResult {
   std::string reference_text{};
   std::string_view estimator = refit_estimator;
   /// True for a fit by wind and height alone. Then `FittedParameter::noise_error` is that of the likelihood,
-  /// and the stated errors are by the likelihood or by the jackknife: the one with the larger error of
-  /// delta-p.
+  /// and the stated errors are by the likelihood or by the jackknife: the larger one for each
+  /// combination of coefficients.
   bool is_by_gps() const { return estimator == refit_estimator_of_gps; }
   /// Label of `noise_rms`: by GPS an upper limit, as in `ModelComparison::is_by_gps`.
   const char* noise_label() const { return is_by_gps() ? "max noise" : "noise"; }
