@@ -1,7 +1,9 @@
 #include "temperature/parts.hpp"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -22,20 +24,47 @@ PartCorrection common_at(double temperature, const HeightUnknowns& unknowns) {
   return part;
 }
 
-/// Records of residual heights, with the columns of a0 in climbs, a0 in descents, and both times the
-/// temperature.
-HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightUnknowns& unknowns) {
-  HeightRecord record = without_unknowns(whole, unknowns);
-  double climbs = 0.0;
-  double descents = 0.0;
+/// Whether a step of the height, proportional to the change of the column of a0, belongs to the first part.
+using IsFirst = std::function<bool(const HeightBlock& block, double step)>;
+
+/// Record of residual heights, with the columns of a0 in each of two parts, and both times the temperature.
+HeightRecord in_two_parts(HeightRecord record, const IsFirst& is_first) {
+  double first = 0.0;
+  double second = 0.0;
   double before = 0.0;
   for (HeightBlock& block : record.blocks) {
     const double step = block.starts_segment ? 0.0 : block.columns[0] - before;
     before = block.columns[0];
-    (step > 0.0 ? climbs : descents) += step;
-    block.columns.head<lasting>() = Eigen::Vector3d(climbs, descents, block.columns[1]);
+    (is_first(block, step) ? first : second) += step;
+    block.columns.head<lasting>() = Eigen::Vector3d(first, second, block.columns[1]);
   }
   return record;
+}
+
+/// Corrections from records in two parts. Empty if one part has no heights.
+std::vector<PartCorrection> corrections_of_two(const std::vector<HeightRecord>& parted,
+                                               const std::array<const char*, 2>& names,
+                                               const HeightNoise& noise, const HeightPrior& prior,
+                                               const HeightUnknowns& unknowns, const Workers& workers) {
+  const HeightEquations equations = height_equations(parted, noise, prior, workers);
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    if (!(equations.information(k, k) > 0.0)) return {};
+  }
+  // The column of a1 as the sum of both of a0, each times a temperature.
+  const Eigen::MatrixXd both = equations.information.topLeftCorner(2, 3);
+  const Eigen::VectorXd temperature = inverse_of(both.leftCols(2)) * both.col(2);
+  const Eigen::MatrixXd covariance = equations.covariance(2);
+  const double of_difference = covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1);  // K^2
+  std::vector<PartCorrection> parts;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    PartCorrection part = common_at(temperature[k], unknowns);
+    part.part = names.at(static_cast<std::size_t>(k));
+    part.correction = part.common + equations.best(2)[k];
+    part.standard_error = std::sqrt(covariance(k, k));
+    part.difference_error = std::sqrt(0.5 * of_difference);
+    parts.push_back(std::move(part));
+  }
+  return parts;
 }
 
 }  // namespace
@@ -62,26 +91,24 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
                                                                const HeightUnknowns& unknowns,
                                                                const Workers& workers) {
   std::vector<HeightRecord> parted;
-  for (const HeightRecord& record : records) parted.push_back(with_climbs_and_descents(record, unknowns));
-  const HeightEquations equations = height_equations(parted, noise, prior, workers);
-  std::vector<PartCorrection> parts;
-  for (Eigen::Index k = 0; k < 2; ++k) {
-    if (!(equations.information(k, k) > 0.0)) return {};
+  for (const HeightRecord& record : records) {
+    parted.push_back(in_two_parts(without_unknowns(record, unknowns),
+                                  [](const HeightBlock&, double step) { return step > 0.0; }));
   }
-  // The column of a1 as the sum of both of a0, each times a temperature.
-  const Eigen::MatrixXd both = equations.information.topLeftCorner(2, 3);
-  const Eigen::VectorXd temperature = inverse_of(both.leftCols(2)) * both.col(2);
-  const Eigen::MatrixXd covariance = equations.covariance(2);
-  const double of_difference = covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1);  // K^2
-  for (Eigen::Index k = 0; k < 2; ++k) {
-    PartCorrection part = common_at(temperature[k], unknowns);
-    part.part = k == 0 ? "climbs" : "descents";
-    part.correction = part.common + equations.best(2)[k];
-    part.standard_error = std::sqrt(covariance(k, k));
-    part.difference_error = std::sqrt(0.5 * of_difference);
-    parts.push_back(std::move(part));
+  return corrections_of_two(parted, {"climbs", "descents"}, noise, prior, unknowns, workers);
+}
+
+std::vector<PartCorrection> corrections_of_halves(const std::vector<HeightRecord>& records,
+                                                  const HeightNoise& noise, const HeightPrior& prior,
+                                                  const HeightUnknowns& unknowns, const Workers& workers) {
+  std::vector<HeightRecord> parted;
+  for (const HeightRecord& record : records) {
+    const double middle = 0.5 * (record.blocks.front().time + record.blocks.back().time);
+    parted.push_back(
+        in_two_parts(without_unknowns(record, unknowns),
+                     [middle](const HeightBlock& block, double) { return block.time < middle; }));
   }
-  return parts;
+  return corrections_of_two(parted, {"first half", "second half"}, noise, prior, unknowns, workers);
 }
 
 Disagreement disagreement_of(const std::vector<PartCorrection>& parts) {

@@ -22,6 +22,13 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
                                                                const HeightUnknowns& unknowns,
                                                                const Workers& workers);
 
+/// Corrections estimated from the first and the second half of each flight, like those of climbs and of
+/// descents: the error of a thermometer does not change during a flight, unlike that of the atmosphere or of
+/// the heights.
+std::vector<PartCorrection> corrections_of_halves(const std::vector<HeightRecord>& records,
+                                                  const HeightNoise& noise, const HeightPrior& prior,
+                                                  const HeightUnknowns& unknowns, const Workers& workers);
+
 /// Test of heterogeneity between parts, and its size.
 struct Disagreement {
   double chi_squared = 0.0;  ///< chi-squared of the parts about their mean

@@ -244,15 +244,16 @@ class TemperatureCalibration {
 
   /// Covariance of errors that the likelihood cannot detect. Constant errors of the pressure: in hPa,
   /// detectable from the shape of the heights only if that of the thermometer's error were known, or relative
-  /// to the pressure, which affects the temperature only. And the spread between flights, and between climbs
-  /// and descents, which limits the accuracy of a common correction.
+  /// to the pressure, which affects the temperature only. And the spread between flights, between climbs and
+  /// descents, and between halves, which limits the accuracy of a common correction.
   Eigen::MatrixXd covariance_of_unseen(const Eigen::VectorXd& per_hpa,
                                        const Eigen::VectorXd& per_hpa_in_proportion) const {
     const Eigen::VectorXd by_zero = result_.pressure_error * per_hpa;
     const Eigen::VectorXd by_law = result_.law_error * per_hpa_in_proportion;
     Eigen::MatrixXd covariance = by_zero * by_zero.transpose() + by_law * by_law.transpose();
     covariance(0, 0) += result_.spread_of_flights * result_.spread_of_flights +
-                        result_.spread_of_climbs * result_.spread_of_climbs;
+                        result_.spread_of_climbs * result_.spread_of_climbs +
+                        result_.spread_of_halves * result_.spread_of_halves;
     return covariance;
   }
 
@@ -260,8 +261,10 @@ class TemperatureCalibration {
     result_.parts_by_flight = corrections_of_flights(records_, most_likely_.noise, prior_, unknowns_);
     result_.parts_by_climb =
         corrections_of_climbs_and_descents(records_, most_likely_.noise, prior_, unknowns_, workers_);
+    result_.parts_by_half = corrections_of_halves(records_, most_likely_.noise, prior_, unknowns_, workers_);
     result_.spread_of_flights = disagreement_of(result_.parts_by_flight).spread;
     result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
+    result_.spread_of_halves = disagreement_of(result_.parts_by_half).spread;
   }
 
   /// Range of the static pressure over the segments due to an error of one unit, hPa.
@@ -429,7 +432,8 @@ class TemperatureCalibration {
           "than {:g} standard errors",
           with_error(result_.least_squares_add, result_.least_squares_add_error), significant_ratio);
     }
-    for (const std::vector<PartCorrection>* parts : {&result_.parts_by_flight, &result_.parts_by_climb}) {
+    for (const std::vector<PartCorrection>* parts :
+         {&result_.parts_by_flight, &result_.parts_by_climb, &result_.parts_by_half}) {
       for (const PartCorrection& part : *parts) {
         if (!is_made_worse(part)) continue;
         return fmt::format(

@@ -63,4 +63,27 @@ TEST(Parts, DifferenceOfClimbsAndDescentsHasTheErrorOfADifference) {
   EXPECT_NEAR(disagreement_of(parts).chi_squared / expected, 1.0, 1e-5);
 }
 
+// A flight that climbs in its first half and descends in the second.
+TEST(Parts, HalvesOfAClimbAndADescentAreTheClimbAndTheDescent) {
+  HeightRecord record = climb_and_descent();
+  for (HeightBlock& block : record.blocks)
+    block.columns.head<2>() = Eigen::Vector2d(block.columns[0] + block.columns[1], 0.0);
+  HeightNoise noise;
+  noise.white = 1.0;
+  noise.wander = noise.walk = 0.0;
+  HeightPrior prior;
+  prior.slope = 0.0;
+  const Workers workers(pcor::serial_communicator(), 1);
+  const HeightUnknowns none = HeightUnknowns::Zero();
+  const auto by_direction = corrections_of_climbs_and_descents({record}, noise, prior, none, workers);
+  const auto by_time = corrections_of_halves({record}, noise, prior, none, workers);
+  ASSERT_EQ(by_time.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    // The step at the middle belongs to the climb, but to the second half.
+    EXPECT_NEAR(by_time[k].correction, by_direction[k].correction, 0.3 * by_direction[k].standard_error);
+    EXPECT_NEAR(by_time[k].standard_error / by_direction[k].standard_error, 1.0, 0.1);
+  }
+  EXPECT_GT(std::abs(by_time[0].correction - by_time[1].correction), 3.0 * by_time[0].difference_error);
+}
+
 }  // namespace

@@ -221,13 +221,15 @@ struct TemperatureResult {
   /// errors. Prior: the typical size of humidity-error, 10 %.
   double humidity_change = 0.0;
   double humidity_error = 0.0;  ///< standard error
-  /// Corrections of each flight, and of climbs and descents. If they differ significantly (p < 0.01), the
-  /// standard deviation between them is included in all standard errors.
+  /// Corrections of each flight, of climbs and descents, and of the first and second half of the flights. If
+  /// they differ significantly (p < 0.01), the standard deviation between them is included in all standard
+  /// errors.
   std::vector<PartCorrection> parts_by_flight{};
   std::vector<PartCorrection> parts_by_climb{};
-  double spread_of_flights = 0.0;  ///< K; 0 if they agree
-  /// Standard deviation between climbs and descents, K; 0 if they agree.
-  double spread_of_climbs = 0.0;
+  std::vector<PartCorrection> parts_by_half{};
+  double spread_of_flights = 0.0;    ///< K; 0 if they agree
+  double spread_of_climbs = 0.0;     ///< between climbs and descents, K; 0 if they agree
+  double spread_of_halves = 0.0;     ///< K; 0 if they agree
   double gps_noise = 0.0;            ///< white noise of a sample, m
   double gps_wander = 0.0;           ///< correlated noise, m
   double gps_wander_time = 0.0;      ///< correlation time, s
@@ -284,8 +286,10 @@ void describe(const TemperatureResult& self, Field& field) {
   field.object("parts", "corrections from parts of the data", [&self](Field& parts) {
     parts("flights", self.parts_by_flight, "correction of each flight");
     parts("climbs_and_descents", self.parts_by_climb, "correction of climbs and of descents");
+    parts("halves", self.parts_by_half, "correction of the first and of the second half of the flights");
     parts("spread_of_flights_k", self.spread_of_flights, "spread of flights; 0 if they agree");
     parts("spread_of_climbs_k", self.spread_of_climbs, "spread of climbs and descents; 0 if they agree");
+    parts("spread_of_halves_k", self.spread_of_halves, "spread of the halves; 0 if they agree");
   });
   field("worse", self.worse, "reason for which the correction is rejected; otherwise empty");
   field("warnings", self.warnings, "warnings");
