@@ -22,8 +22,8 @@ struct GpsFit {
 /// fixed: delta-p stays as near to that of the input model as the rest allows, with the error of the prior or
 /// the error stated in the file.
 ///
-/// The stated covariance is, along each common principal axis, the larger of that of the likelihood and that of
-/// a jackknife over parts of five minutes.
+/// The stated covariance is, along each common principal axis, the larger of that of the likelihood and that
+/// of a jackknife over parts of five minutes.
 ///
 /// Errors of fixed coefficients with a stated error are not corrected: the fit takes their values as exact.
 /// With rows X by the requested coefficients and the nuisances, H by the fixed ones, their weight W and the

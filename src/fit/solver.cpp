@@ -117,8 +117,8 @@ class ReducedCost final : public ceres::CostFunction {
   Eigen::Index size_;
 };
 
-/// Stops at a kink of the loss, as at saturation, which limits the humidity of many samples: there the derivatives
-/// no longer predict the decrease of the loss, and steps become shorter without end.
+/// Stops at a kink of the loss, as at saturation, which limits the humidity of many samples: there the
+/// derivatives no longer predict the decrease of the loss, and steps become shorter without end.
 class StopAtKink final : public ceres::IterationCallback {
  public:
   explicit StopAtKink(double deviation) : negligible_(0.5 * 0.01 * 0.01 * deviation * deviation) {}

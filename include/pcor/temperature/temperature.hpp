@@ -228,7 +228,7 @@ struct TemperatureResult {
   std::vector<PartCorrection> parts_by_climb{};
   std::vector<PartCorrection> parts_by_half{};
   double spread_of_flights = 0.0;    ///< K; 0 if they agree
-  double spread_of_climbs = 0.0;     ///< between climbs and descents, K; 0 if they agree
+  double spread_of_climbs = 0.0;     ///< spread between climbs and descents, K; 0 if they agree
   double spread_of_halves = 0.0;     ///< K; 0 if they agree
   double gps_noise = 0.0;            ///< white noise of a sample, m
   double gps_wander = 0.0;           ///< correlated noise, m
