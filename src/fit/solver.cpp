@@ -118,19 +118,27 @@ class ReducedCost final : public ceres::CostFunction {
 };
 
 /// Stops at a kink of the loss, as at saturation, which limits the humidity of many samples: there the
-/// derivatives no longer predict the decrease of the loss, and steps become shorter without end.
+/// derivatives no longer predict the decrease of the loss, and steps become shorter without end. Beside a
+/// bound they do not predict it either, because Ceres projects the steps, so the fit goes on.
 class StopAtKink final : public ceres::IterationCallback {
  public:
-  explicit StopAtKink(double deviation) : negligible_(0.5 * 0.01 * 0.01 * deviation * deviation) {}
+  /// @param x unknowns of the last successful step; x and its bounds must outlive this object
+  StopAtKink(const Eigen::VectorXd& x, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
+             double deviation)
+      : x_(x), lower_(lower), upper_(upper), negligible_(0.5 * 0.01 * 0.01 * deviation * deviation) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
     constexpr double min_predicted = 0.25;  // share of the predicted decrease
-    const bool is_kink = step.iteration > 0 && step.step_is_successful &&
-                         step.relative_decrease < min_predicted && step.cost_change < negligible_;
-    return is_kink ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    const bool is_negligible = step.iteration > 0 && step.step_is_successful &&
+                               step.relative_decrease < min_predicted && step.cost_change < negligible_;
+    const bool is_inside = (x_.array() > lower_.array() && x_.array() < upper_.array()).all();
+    return is_negligible && is_inside ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
+  const Eigen::VectorXd& x_;
+  const Eigen::VectorXd& lower_;
+  const Eigen::VectorXd& upper_;
   double negligible_;  ///< decrease by a hundredth of a standard error of one coefficient
 };
 
@@ -346,8 +354,9 @@ class Solver {
     options.parameter_tolerance = 1e-9;
     options.gradient_tolerance = 1e-14;
     options.logging_type = ceres::SILENT;
-    StopAtKink stop(solution_.deviation);
+    StopAtKink stop(x, lower_, upper_, solution_.deviation);
     options.callbacks.push_back(&stop);
+    options.update_state_every_iteration = true;
     ceres::Solver::Summary summary;
     {
       const QuietLog quiet;
