@@ -540,7 +540,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     }
     if (!seen) limit.note = "not detectable on these flights, even at its largest possible size";
     if (!score.possible) {
-      limit.note = "the size needed to explain the residual is outside its physical bounds";
+      limit.note = "the size needed to explain the residual is impossible or has a more likely cause";
     }
     limits.push_back(std::move(limit));
   }

@@ -241,16 +241,13 @@ std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Ca
         effects.emplace(differences_alone ? candidate.effect.id : candidate.id, effects.size()).first->second;
     if (candidate.is_of_reference())
       group.system = systems.emplace(candidate.system, systems.size() + 1).first->second;
+    // Variations of the atmosphere are more likely than an effect beyond the widest prior.
+    if (is_by_gps) group.max_times_usual = widest_prior;
     group.first = first;
     group.count = as_index(candidate.tested.size());
     group.has_uncertain_shape = has_uncertain_shape(candidate.effect);
     for (const CandidateParameter& parameter : candidate.tested) {
-      Bounds& bounds = group.bounds.emplace_back(parameter.bounds);
-      if (is_by_gps && parameter.typical != 0.0) {
-        // Variations of the atmosphere are more likely than an effect beyond the widest prior.
-        const double largest = widest_prior * std::abs(parameter.typical);
-        bounds = {std::max(bounds.lower, -largest), std::min(bounds.upper, largest)};
-      }
+      group.bounds.push_back(parameter.bounds);
       group.usual.push_back(parameter.typical);
     }
     first += group.count;

@@ -264,6 +264,10 @@ GroupScore Search::score_in(const Conditional& conditional, std::size_t group) c
     const double slack = errors_beyond_bounds * std::sqrt(result.covariance(k, k));
     if (result.estimate[k] + slack < bounds.lower || result.estimate[k] - slack > bounds.upper)
       result.possible = false;
+    const auto number = static_cast<std::size_t>(k);
+    if (number < columns.usual.size() && columns.usual[number] != 0.0 &&
+        std::abs(result.estimate[k]) - slack > columns.max_times_usual * std::abs(columns.usual[number]))
+      result.possible = false;
   }
   return result;
 }

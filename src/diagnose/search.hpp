@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct ColumnGroup {
   std::vector<Bounds> bounds{};  ///< coefficient of each column; an effect beyond them is impossible
   /// Usual size of each coefficient; 0 or empty if unknown.
   std::vector<double> usual{};
+  /// An effect clearly beyond this number of usual sizes has another cause.
+  double max_times_usual = std::numeric_limits<double>::infinity();
   /// Columns of the uncertain shape, whose coefficients have a normal prior of variance 1; empty before the
   /// effect was chosen.
   Eigen::Index shape_first = 0;

@@ -30,11 +30,23 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
 }
 
 Eigen::MatrixXd larger_covariance(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
-  // With R R' = one + other, the parts R^-1 one R'^-1 and R^-1 other R'^-1 add up to one: same eigenvectors.
-  const Eigen::MatrixXd root = covariance_root(one + other);
-  const Eigen::MatrixXd inverse = pseudo_inverse(root);
-  const SymmetricEigen part(inverse * one * inverse.transpose());
-  const Eigen::MatrixXd axes = root * part.eigenvectors();
+  // With R R' = one + other over the directions in which the sum is not zero, the parts R^-1 one R'^-1 and
+  // R^-1 other R'^-1 add up to one, so they have the same eigenvectors.
+  const Eigen::MatrixXd sum = one + other;
+  const Eigen::VectorXd scale = sum.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  const SymmetricEigen correlations(inverse.asDiagonal() * sum * inverse.asDiagonal());
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index k = 0; k < sum.rows(); ++k) {
+    if (correlations.eigenvalues()[k] > rank_limit) kept.push_back(k);
+  }
+  if (kept.empty()) return Eigen::MatrixXd::Zero(sum.rows(), sum.cols());
+  const Eigen::VectorXd root = correlations.eigenvalues()(kept).cwiseSqrt();
+  const Eigen::MatrixXd directions = correlations.eigenvectors()(Eigen::all, kept);
+  const Eigen::MatrixXd white =
+      root.cwiseInverse().asDiagonal() * directions.transpose() * inverse.asDiagonal();
+  const SymmetricEigen part(white * one * white.transpose());
+  const Eigen::MatrixXd axes = scale.asDiagonal() * directions * root.asDiagonal() * part.eigenvectors();
   const Eigen::VectorXd larger = part.eigenvalues().cwiseMax((1.0 - part.eigenvalues().array()).matrix());
   return axes * larger.asDiagonal() * axes.transpose();
 }

@@ -291,6 +291,12 @@ TEST(Search, EffectOfTypicalSizeIsPreferred) {
   alone.group_by(1);
   alone.groups[2].usual = {0.01};
   EXPECT_THAT(alone.search().run({}).chosen, ElementsAre(2U));
+  // By GPS alone the atmosphere is a more likely cause of such a size.
+  alone.groups[2].max_times_usual = 10.0;
+  EXPECT_FALSE(alone.search().score(2, {}).possible);
+  EXPECT_THAT(alone.search().run({}).chosen, IsEmpty());
+  alone.groups[2].usual = {0.03};
+  EXPECT_THAT(alone.search().run({}).chosen, ElementsAre(2U));
 }
 
 // The marginal likelihood of one column in normal noise of known size: chi2, size and error by the formula

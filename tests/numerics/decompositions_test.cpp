@@ -45,16 +45,23 @@ TEST(LargerCovariance, IsTheLargerOneAlongEachAxis) {
   EXPECT_TRUE(((larger - expected).array().abs() <= allowed.array()).all());
 }
 
+// Also if both are zero along one direction, as that of a level that flights do not determine.
 TEST(LargerCovariance, ExceedsBothAndNotTheirSum) {
   const Eigen::MatrixXd any = symmetric(4, 5);
   const Eigen::MatrixXd other = symmetric(4, 6);
-  const Eigen::MatrixXd a = any * any;
-  const Eigen::MatrixXd b = other * other;
-  const Eigen::MatrixXd larger = larger_covariance(a, b);
-  for (const Eigen::MatrixXd& excess :
-       {Eigen::MatrixXd(larger - a), Eigen::MatrixXd(larger - b), Eigen::MatrixXd(a + b - larger)})
-    EXPECT_GT(symmetric_eigenvalues(excess).minCoeff(), -1e-12) << "rounding of elements near 10";
-  EXPECT_TRUE(larger_covariance(a, 4.0 * a).isApprox(4.0 * a, 1e-12));
+  const Eigen::Vector4d direction{0.5, -0.1, 0.7, 0.3};
+  const Eigen::Vector4d weight{1.0, 2.0, 0.5, -1.0};
+  const Eigen::MatrixXd oblique =
+      Eigen::MatrixXd::Identity(4, 4) - direction * weight.transpose() / weight.dot(direction);
+  for (const Eigen::MatrixXd& level : {Eigen::MatrixXd(Eigen::MatrixXd::Identity(4, 4)), oblique}) {
+    const Eigen::MatrixXd a = level * any * any * level.transpose();
+    const Eigen::MatrixXd b = level * other * other * level.transpose();
+    const Eigen::MatrixXd larger = larger_covariance(a, b);
+    for (const Eigen::MatrixXd& excess :
+         {Eigen::MatrixXd(larger - a), Eigen::MatrixXd(larger - b), Eigen::MatrixXd(a + b - larger)})
+      EXPECT_GT(symmetric_eigenvalues(excess).minCoeff(), -1e-10) << "rank limit times elements near 10";
+    EXPECT_TRUE(larger_covariance(a, 4.0 * a).isApprox(4.0 * a, 1e-10));
+  }
 }
 
 }  // namespace
