@@ -108,7 +108,7 @@ std::vector<PartCorrection> corrections_of_halves(const std::vector<HeightRecord
         in_two_parts(without_unknowns(record, unknowns),
                      [middle](const HeightBlock& block, double) { return block.time < middle; }));
   }
-  return corrections_of_two(parted, {"first half", "second half"}, noise, prior, unknowns, workers);
+  return corrections_of_two(parted, {"first halves", "second halves"}, noise, prior, unknowns, workers);
 }
 
 Disagreement disagreement_of(const std::vector<PartCorrection>& parts) {

@@ -23,8 +23,7 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
                                                                const Workers& workers);
 
 /// Corrections estimated from the first and the second half of each flight, like those of climbs and of
-/// descents: the error of a thermometer does not change during a flight, unlike that of the atmosphere or of
-/// the heights.
+/// descents. A difference shows a drift of the thermometer, of the atmosphere or of the heights.
 std::vector<PartCorrection> corrections_of_halves(const std::vector<HeightRecord>& records,
                                                   const HeightNoise& noise, const HeightPrior& prior,
                                                   const HeightUnknowns& unknowns, const Workers& workers);

@@ -251,9 +251,10 @@ class TemperatureCalibration {
     const Eigen::VectorXd by_zero = result_.pressure_error * per_hpa;
     const Eigen::VectorXd by_law = result_.law_error * per_hpa_in_proportion;
     Eigen::MatrixXd covariance = by_zero * by_zero.transpose() + by_law * by_law.transpose();
-    covariance(0, 0) += result_.spread_of_flights * result_.spread_of_flights +
-                        result_.spread_of_climbs * result_.spread_of_climbs +
-                        result_.spread_of_halves * result_.spread_of_halves;
+    // Between one climb and one descent, both of the latter are the same.
+    const double within_flights = std::max(result_.spread_of_climbs, result_.spread_of_halves);
+    covariance(0, 0) +=
+        result_.spread_of_flights * result_.spread_of_flights + within_flights * within_flights;
     return covariance;
   }
 

@@ -60,8 +60,10 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
         who, spread, apart.chance, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1));
   };
   differ(result.parts_by_flight, result.spread_of_flights, "the thermometers of the flights");
-  differ(result.parts_by_climb, result.spread_of_climbs, "climbs and descents");
-  differ(result.parts_by_half, result.spread_of_halves, "the halves of the flights");
+  if (result.spread_of_climbs >= result.spread_of_halves)
+    differ(result.parts_by_climb, result.spread_of_climbs, "climbs and descents");
+  else
+    differ(result.parts_by_half, result.spread_of_halves, "the halves of the flights");
   for (const LawError& error : result.law_errors) {
     if (!is_seen(error)) continue;
     const bool is_in_model = has_effect(result.model, error.effect);
