@@ -31,7 +31,7 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
   if (result.defect_error > more_than_any_defect) {
     return fmt::format(
         "the standard error of delta-p is {:.0f} hPa, so these flights do not determine the model; hold "
-        "coefficients with --fix, or give a laser or a second system as a further reference",
+        "coefficients with --fix, or give a further reference",
         result.defect_error);
   }
   const std::optional<HeldOutPart> held_out = worst_held_out(result.flights);
