@@ -118,8 +118,8 @@ class ReducedCost final : public ceres::CostFunction {
 };
 
 /// Stops at a kink of the loss, as at saturation, which limits the humidity of many samples: there the
-/// derivatives no longer predict the decrease of the loss, and steps become shorter without end. Beside a
-/// bound they do not predict it either, because Ceres projects the steps, so the fit goes on.
+/// derivatives no longer predict the decrease of the loss, and the steps become shorter and shorter. At a
+/// bound the derivatives do not predict it either, because Ceres projects the steps: there the fit continues.
 class StopAtKink final : public ceres::IterationCallback {
  public:
   /// @param x unknowns of the last successful step; x and its bounds must outlive this object

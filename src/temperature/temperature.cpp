@@ -433,8 +433,7 @@ class TemperatureCalibration {
           "than {:g} standard errors",
           with_error(result_.least_squares_add, result_.least_squares_add_error), significant_ratio);
     }
-    for (const std::vector<PartCorrection>* parts :
-         {&result_.parts_by_flight, &result_.parts_by_climb, &result_.parts_by_half}) {
+    for (const std::vector<PartCorrection>* parts : result_.parts()) {
       for (const PartCorrection& part : *parts) {
         if (!is_made_worse(part)) continue;
         return fmt::format(

@@ -81,12 +81,10 @@ ReportTable part_table(const TemperatureResult& result) {
       "Separate fits of parts",
       "Correction of each flight, of climbs and descents, and of the halves of the flights: the common "
       "correction plus a constant, with the error due to noise. If they differ significantly (p < 0.01), the "
-      "standard deviation between them "
-      "is included in the errors of the coefficients.",
+      "standard deviation between them is included in the errors of the coefficients.",
       {"part", "at, °C", "separate fit, K", "std. error, K", "all data, K"},
       {}};
-  for (const std::vector<PartCorrection>* parts :
-       {&result.parts_by_flight, &result.parts_by_climb, &result.parts_by_half}) {
+  for (const std::vector<PartCorrection>* parts : result.parts()) {
     for (const PartCorrection& part : *parts)
       table.rows.push_back({part.part, fmt::format("{:.1f}", part.temperature),
                             fmt::format("{:+.3f}", part.correction),

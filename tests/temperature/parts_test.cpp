@@ -28,6 +28,19 @@ HeightRecord climb_and_descent() {
   return record;
 }
 
+HeightNoise white_noise() {
+  HeightNoise noise;
+  noise.white = 1.0;
+  noise.wander = noise.walk = 0.0;
+  return noise;
+}
+
+HeightPrior level_isobars() {
+  HeightPrior prior;
+  prior.slope = 0.0;
+  return prior;
+}
+
 /// The record with other columns in place of those in climbs and in descents.
 template <class Columns>
 HeightRecord with_columns(const Columns& columns) {
@@ -37,18 +50,15 @@ HeightRecord with_columns(const Columns& columns) {
   return record;
 }
 
+/// The integral of the column of a0 over climbs and descents.
+Eigen::Vector2d integral(double climbs, double descents) { return {climbs + descents, 0.0}; }
+
 // Both corrections depend on the unknown height at the start. Taken as independent, they gave half of the
 // chi-squared.
 TEST(Parts, DifferenceOfClimbsAndDescentsHasTheErrorOfADifference) {
-  HeightNoise noise;
-  noise.white = 1.0;
-  noise.wander = noise.walk = 0.0;
-  HeightPrior prior;
-  prior.slope = 0.0;
+  const HeightNoise noise = white_noise();
+  const HeightPrior prior = level_isobars();
   const Workers workers(pcor::serial_communicator(), 1);
-  const auto integral = [](double climbs, double descents) {
-    return Eigen::Vector2d(climbs + descents, 0.0);
-  };
   const std::vector<pcor::PartCorrection> parts = corrections_of_climbs_and_descents(
       {with_columns(integral)}, noise, prior, HeightUnknowns::Zero(), workers);
   ASSERT_EQ(parts.size(), 2U);
@@ -65,14 +75,9 @@ TEST(Parts, DifferenceOfClimbsAndDescentsHasTheErrorOfADifference) {
 
 // A flight that climbs in its first half and descends in the second.
 TEST(Parts, HalvesOfAClimbAndADescentAreTheClimbAndTheDescent) {
-  HeightRecord record = climb_and_descent();
-  for (HeightBlock& block : record.blocks)
-    block.columns.head<2>() = Eigen::Vector2d(block.columns[0] + block.columns[1], 0.0);
-  HeightNoise noise;
-  noise.white = 1.0;
-  noise.wander = noise.walk = 0.0;
-  HeightPrior prior;
-  prior.slope = 0.0;
+  const HeightRecord record = with_columns(integral);
+  const HeightNoise noise = white_noise();
+  const HeightPrior prior = level_isobars();
   const Workers workers(pcor::serial_communicator(), 1);
   const HeightUnknowns none = HeightUnknowns::Zero();
   const auto by_direction = corrections_of_climbs_and_descents({record}, noise, prior, none, workers);

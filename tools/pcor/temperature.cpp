@@ -54,8 +54,7 @@ void print_flights(const TemperatureResult& result) {
 
 void print_parts(const TemperatureResult& result) {
   say("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "alone", "all flights");
-  for (const std::vector<PartCorrection>* parts :
-       {&result.parts_by_flight, &result.parts_by_climb, &result.parts_by_half}) {
+  for (const std::vector<PartCorrection>* parts : result.parts()) {
     for (const PartCorrection& part : *parts)
       say("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
           with_error(part.correction, part.standard_error), part.common);

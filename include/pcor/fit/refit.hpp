@@ -172,8 +172,7 @@ inline constexpr std::string_view refit_estimator =
 inline constexpr std::string_view refit_estimator_of_gps =
     "Coefficients by maximum likelihood, with winds, D-value and errors of GPS and instruments as random "
     "processes; errors from that likelihood or from the scatter of blocks of five minutes: the larger one "
-    "for "
-    "each combination of coefficients.";
+    "for each combination of coefficients.";
 
 struct RefitResult {
   ModelDefinition model;  ///< fitted model with coefficients, standard errors, covariance and provenance

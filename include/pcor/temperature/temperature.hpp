@@ -4,6 +4,7 @@
 #include <pcor/fit/refit.hpp>
 #include <pcor/report/report.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -227,6 +228,10 @@ struct TemperatureResult {
   std::vector<PartCorrection> parts_by_flight{};
   std::vector<PartCorrection> parts_by_climb{};
   std::vector<PartCorrection> parts_by_half{};
+  /// All parts of which the corrections are compared.
+  std::array<const std::vector<PartCorrection>*, 3> parts() const {
+    return {&parts_by_flight, &parts_by_climb, &parts_by_half};
+  }
   double spread_of_flights = 0.0;    ///< K; 0 if they agree
   double spread_of_climbs = 0.0;     ///< spread between climbs and descents, K; 0 if they agree
   double spread_of_halves = 0.0;     ///< K; 0 if they agree
