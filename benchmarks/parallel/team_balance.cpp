@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
       microseconds.push_back(static_cast<std::uint64_t>(20'000.0 * length(chance)));
       all += 1e-6 * static_cast<double>(microseconds.back());
     }
-    const pcor::internal::FlightPartition share(comm, microseconds);
+    const pcor::FlightPartition share(comm, microseconds);
     MPI_Barrier(MPI_COMM_WORLD);
     const auto begin = std::chrono::steady_clock::now();
     for (int pass = 0; pass < passes; ++pass) {

@@ -12,7 +12,9 @@
 #include "flight/current_input.hpp"
 #include "flight/netcdf_file.hpp"
 
-namespace pcor::internal {
+namespace pcor {
+
+namespace internal {
 
 // icartt_file.cpp: series over time in text files of the ICARTT conventions.
 bool is_icartt(const std::filesystem::path& path);
@@ -53,6 +55,8 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
 
 }  // namespace
 
+}  // namespace internal
+
 std::optional<int> FlightFile::find_variable(const std::string& name) const {
   for (int variable = 0; variable < variable_count(); ++variable)
     if (variable_name(variable) == name) return variable;
@@ -60,9 +64,11 @@ std::optional<int> FlightFile::find_variable(const std::string& name) const {
 }
 
 UnitConversion FlightFile::unpacking_of(int variable) const {
-  return {packing_number(*this, variable, "scale_factor", 1),
-          packing_number(*this, variable, "add_offset", 0)};
+  return {internal::packing_number(*this, variable, "scale_factor", 1),
+          internal::packing_number(*this, variable, "add_offset", 0)};
 }
+
+namespace internal {
 
 std::string ncatted_name(const std::string& variable) {
   if (variable.find_first_of(".*+?^$|\\()[]{}<>") == std::string::npos) return variable;
@@ -88,4 +94,6 @@ std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) 
        "ends in 1001");
 }
 
-}  // namespace pcor::internal
+}  // namespace internal
+
+}  // namespace pcor

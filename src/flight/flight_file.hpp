@@ -16,7 +16,7 @@
 #include <pcor/flight/flight.hpp>
 #include "numerics/missing.hpp"
 
-namespace pcor::internal {
+namespace pcor {
 
 /// An open file of any format that may hold a flight: variables over dimensions, with attributes. `Flight`
 /// finds time, units and rates in it.
@@ -68,7 +68,9 @@ class FlightFile {
 
   /// Smallest and largest valid number of a numeric variable, in the units of `read`; infinite if the file
   /// states no range. @throws Error if the stated range is invalid.
-  virtual std::array<double, 2> valid_range(int /*variable*/) const { return {-infinity, infinity}; }
+  virtual std::array<double, 2> valid_range(int /*variable*/) const {
+    return {-internal::infinity, internal::infinity};
+  }
 
   /// Attributes for a range of valid values that are not numbers, which `valid_range` ignores: "valid_range =
   /// \"all\"". Empty without such attributes.
@@ -89,6 +91,8 @@ class FlightFile {
   virtual void read(int variable, RecordBlock records, double* out) const = 0;
 };
 
+namespace internal {
+
 /// Name of a variable for the option -a of ncatted, which reads names with . * + and the like as patterns.
 std::string ncatted_name(const std::string& variable);
 
@@ -96,4 +100,6 @@ std::string ncatted_name(const std::string& variable);
 /// truncated.
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path);
 
-}  // namespace pcor::internal
+}  // namespace internal
+
+}  // namespace pcor

@@ -9,9 +9,7 @@ namespace pcor {
 
 using namespace internal;
 
-namespace internal {
-
-struct Message {
+struct Communicator::Message {
   bool is_last = false;  // its sender leaves
   std::uint64_t state = 0;
   std::string part{};
@@ -25,39 +23,33 @@ struct Message {
   void serialize(Archive& archive) {
     archive(is_last, state, part, has_error, order, code, text);
   }
+
+  static Message of(const Error& error, std::size_t order) {
+    Message message;
+    message.has_error = true;
+    message.order = order;
+    message.code = error.code();
+    message.text = error.what();
+    return message;
+  }
+
+  /// Error in which a single process would have failed first.
+  static const Message* first_error(const std::vector<Message>& all) {
+    const Message* first = nullptr;
+    for (const Message& each : all) {
+      if (each.has_error && (first == nullptr || each.order < first->order)) first = &each;
+    }
+    return first;
+  }
 };
 
-}  // namespace internal
-
-namespace {
-
-Message message_of(const Error& error, std::size_t order) {
-  Message message;
-  message.has_error = true;
-  message.order = order;
-  message.code = error.code();
-  message.text = error.what();
-  return message;
-}
-
-/// Error in which a single process would have failed first.
-const Message* first_error(const std::vector<Message>& all) {
-  const Message* first = nullptr;
-  for (const Message& each : all) {
-    if (each.has_error && (first == nullptr || each.order < first->order)) first = &each;
-  }
-  return first;
-}
-
-}  // namespace
-
-std::vector<Message> Communicator::talk(const Message& own) {
+std::vector<Communicator::Message> Communicator::talk(const Message& own) {
   if (has_parted_)
     throw parted_with_ ? *parted_with_ : Error(Error::Code::system, "another process of this run has ended");
   std::vector<Message> all;
   for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
   has_parted_ = std::any_of(all.begin(), all.end(), [](const Message& each) { return each.is_last; });
-  if (const Message* const error = first_error(all)) {
+  if (const Message* const error = Message::first_error(all)) {
     const Error agreed(error->code, error->text);
     if (has_parted_) parted_with_ = agreed;
     throw agreed;
@@ -87,14 +79,14 @@ std::vector<std::string> Communicator::gather(const std::string& own, std::uint6
 }
 
 void Communicator::fail(const Error& error, std::size_t order) {
-  if (size() > 1) talk(message_of(error, order));
+  if (size() > 1) talk(Message::of(error, order));
   throw error;
 }
 
 std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
   if (size() == 1) return error;
   if (has_parted_) return parted_with_ ? parted_with_ : error;
-  Message last = error ? message_of(*error, 0) : Message{};
+  Message last = error ? Message::of(*error, 0) : Message{};
   last.is_last = true;
   try {
     talk(last);

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace pcor::internal {
+namespace pcor {
 
 FlightPartition::FlightPartition(std::size_t flights) : comm_(&serial_communicator()), owner_(flights, 0) {}
 
@@ -39,6 +39,8 @@ FlightPartition FlightPartition::part(std::size_t first, std::size_t count) cons
   return of_entries(flights);
 }
 
+namespace internal {
+
 FlightPartition partition_flights(Communicator& comm, const std::vector<std::filesystem::path>& paths) {
   std::vector<std::uint64_t> sizes;
   std::uint64_t names = paths.size();
@@ -53,4 +55,6 @@ FlightPartition partition_flights(Communicator& comm, const std::vector<std::fil
   return {comm, sizes};
 }
 
-}  // namespace pcor::internal
+}  // namespace internal
+
+}  // namespace pcor

@@ -20,7 +20,9 @@
 #include "parallel/packed.hpp"
 #include "parallel/workers.hpp"
 
-namespace pcor::internal {
+namespace pcor {
+
+namespace internal {
 
 /// Error of one flight.
 class FlightError : public Error {
@@ -33,10 +35,12 @@ class FlightError : public Error {
   std::size_t flight_;
 };
 
-/// Which flights of a list each member of a team owns: it alone reads them, and keeps what is kept of them.
+}  // namespace internal
+
+/// Flights of a list that each rank owns: no other rank reads them or keeps data of them.
 class FlightPartition {
  public:
-  /// All flights are of one member.
+  /// All flights belong to one rank.
   explicit FlightPartition(std::size_t flights);
 
   /// Flights by decreasing size, each to the rank with the least to read.
@@ -50,13 +54,13 @@ class FlightPartition {
   }
   Communicator& comm() const { return *comm_; }
   /// Threads of this rank for work on its flights.
-  std::size_t threads() const { return Workers(*comm_, 0).threads; }
+  std::size_t threads() const { return internal::Workers(*comm_, 0).threads; }
 
   /// The share of a list whose entries are each of one of these flights, as is a flight against one of
   /// several references: an entry is of the owner of its flight.
   FlightPartition of_entries(const std::vector<std::size_t>& flight_of_each) const;
 
-  /// These flights, then those of another share of the same team.
+  /// These flights, then those of another partition of the same communicator.
   FlightPartition with(const FlightPartition& more) const;
   FlightPartition part(std::size_t first, std::size_t count) const;
 
@@ -65,7 +69,7 @@ class FlightPartition {
   void attempt(const Work& work) const {
     try {
       work();
-    } catch (const FlightError& error) {
+    } catch (const internal::FlightError& error) {
       comm_->fail(error, error.flight() + 1);
     } catch (const Error& error) {
       comm_->fail(error, 0);
@@ -110,7 +114,7 @@ class FlightPartition {
       std::optional<decltype(read(flight))> input;
       try {
         input = part_of(read, flight);
-      } catch (const FlightError&) {
+      } catch (const internal::FlightError&) {
         while (!working.empty()) finish_first();  // an earlier flight fails first
         throw;
       }
@@ -146,7 +150,7 @@ class FlightPartition {
         state);
   }
 
-  /// The sum of the parts of all flights, added in their order, on every member: some at a time are made and
+  /// The sum of the parts of all flights, added in their order, on every rank: some at a time are made and
   /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=; it
   /// is called by up to `threads` threads, a number that is equal on all ranks
   template <class Part, class Make>
@@ -175,7 +179,7 @@ class FlightPartition {
     try {
       return make(flight);
     } catch (const Error& error) {
-      throw FlightError(error, flight);
+      throw internal::FlightError(error, flight);
     }
   }
 
@@ -183,22 +187,26 @@ class FlightPartition {
   /// @param take gets those of all flights in their order, one after another, so that not all need be held
   template <class Part, class Take>
   void gather(std::vector<Part> own, std::uint64_t state, const Take& take) const {
-    const std::string bytes = packed(own);
+    const std::string bytes = internal::packed(own);
     own = {};
     const std::vector<std::string> all =
-        comm_->gather(bytes, digest_of(typeid(Part).name(), state + flights()));
-    std::deque<Unpacking> members(all.begin(), all.end());
-    for (Unpacking& member : members) member.next<cereal::size_type>();  // number of its flights
+        comm_->gather(bytes, internal::digest_of(typeid(Part).name(), state + flights()));
+    std::deque<internal::Unpacking> ranks(all.begin(), all.end());
+    for (internal::Unpacking& rank : ranks) rank.next<cereal::size_type>();  // number of its flights
     for (std::size_t flight = 0; flight < flights(); ++flight)
-      take(flight, members[owner_[flight]].template next<Part>());
+      take(flight, ranks[owner_[flight]].template next<Part>());
   }
 
   Communicator* comm_;
   std::vector<std::size_t> owner_;
 };
 
+namespace internal {
+
 /// Partition of the flights of these files, by their sizes on the first rank. An unreadable file is reported
 /// by the rank that owns it.
 FlightPartition partition_flights(Communicator& comm, const std::vector<std::filesystem::path>& paths);
 
-}  // namespace pcor::internal
+}  // namespace internal
+
+}  // namespace pcor

@@ -6,10 +6,12 @@
 
 #include <pcor/residuals/samples.hpp>
 
-namespace pcor::internal {
-
+namespace pcor {
 class ModelOnSamples;
 class ReferenceOnSamples;
+}  // namespace pcor
+
+namespace pcor::internal {
 
 /// Masks that are independent of the model, from the motion of the flight and user exclusions: `excluded`,
 /// `ground`, `low_speed`, `flaps`, `regime`, or `none`.

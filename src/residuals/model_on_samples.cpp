@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace pcor::internal {
+namespace pcor {
 namespace {
 
 std::vector<Quantity> roles_of(const ModelDefinition& file, const ModelSamples& samples) {
@@ -15,8 +15,9 @@ std::vector<Quantity> roles_of(const ModelDefinition& file, const ModelSamples& 
 
 }  // namespace
 
-std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns,
-                                   const std::vector<std::size_t>& samples, std::vector<double>& store) {
+std::vector<Batch::Input> internal::gathered(const std::vector<Batch::Input>& columns,
+                                             const std::vector<std::size_t>& samples,
+                                             std::vector<double>& store) {
   store.resize(columns.size() * samples.size());
   std::vector<Batch::Input> inputs;
   double* to = store.data();
@@ -100,4 +101,4 @@ bool ModelOnSamples::is_missing_any(std::size_t sample) const {
                      [&](const Batch::Input& column) { return std::isnan(column.values[sample]); });
 }
 
-}  // namespace pcor::internal
+}  // namespace pcor

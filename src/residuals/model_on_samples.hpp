@@ -6,11 +6,15 @@
 #include <pcor/batch/batch.hpp>
 #include <pcor/residuals/samples.hpp>
 
-namespace pcor::internal {
+namespace pcor {
+
+namespace internal {
 
 /// Columns at some indices, gathered one after another into `store`.
 std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns,
                                    const std::vector<std::size_t>& samples, std::vector<double>& store);
+
+}  // namespace internal
 
 /// Model on the samples of a flight, as inputs of its chain.
 class ModelOnSamples {
@@ -113,4 +117,4 @@ class ModelOnSamples {
   std::vector<Moving> moving_;
 };
 
-}  // namespace pcor::internal
+}  // namespace pcor

@@ -10,7 +10,9 @@
 #include <pcor/residuals/residuals.hpp>
 #include "residuals/model_on_samples.hpp"
 
-namespace pcor::internal {
+namespace pcor {
+
+namespace internal {
 
 inline constexpr int jet_width = 4;
 
@@ -43,6 +45,8 @@ void differentiate(std::size_t count, const std::vector<double>& parameters,
 
 class LamsOnSamples;
 
+}  // namespace internal
+
 /// Reference on the samples of a flight, compared with a model. The parameters are all parameters of the
 /// model, followed by all parameters of the reference's model.
 class ReferenceOnSamples {
@@ -58,7 +62,8 @@ class ReferenceOnSamples {
 
   /// Reference minus model, hPa.
   virtual void residuals(const Block& block, const double* parameters, double* out) const = 0;
-  virtual void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const = 0;
+  virtual void residuals(const std::vector<std::size_t>& samples, const internal::Jet* parameters,
+                         internal::Jet* out) const = 0;
 
   /// Inputs of the reference.
   virtual std::vector<Batch::Input> columns() const { return {}; }
@@ -68,7 +73,7 @@ class ReferenceOnSamples {
 
   /// The laser, whose noise enters the residual through the chain; null if the noise of the reference is
   /// added to the residual directly.
-  virtual const LamsOnSamples* laser() const { return nullptr; }
+  virtual const internal::LamsOnSamples* laser() const { return nullptr; }
 
   /// Number of samples on either side on which its residual depends.
   virtual std::size_t reach() const { return 0; }
@@ -87,4 +92,4 @@ class ReferenceOnSamples {
   }
 };
 
-}  // namespace pcor::internal
+}  // namespace pcor

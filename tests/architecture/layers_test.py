@@ -3,7 +3,8 @@
 
 Every folder of include/pcor, src and tests is a module of layers.txt or a workshop (tests of the whole); a module includes
 modules of lower layers and itself; no files include each other in a circle; a header of src, which is not installed, is
-included by no installed one and keeps its names in pcor::internal; no include climbs through ".."; no two headers define one type;
+included by no installed one and keeps its names in pcor::internal, except types that an installed header declares; no installed
+header names pcor::internal; no include climbs through ".."; no two headers define one type;
 and one file of src calls the netCDF C library.
 docs/architecture.md describes the same modules.
 """
@@ -16,11 +17,28 @@ layers = [line.split() for line in (root / "tests/architecture/layers.txt").read
 layer_of = {module: number for number, layer in enumerate(layers) for module in layer}
 workshops = {"clients", "foreign", "fuzz", "hidden", "hostile", "package", "python", "real", "architecture", "support", "tool"}  # tests of no single module
 trouble = []
+DECLARED = re.compile(r"^(?:class|struct) (\w+);", re.MULTILINE)
+DEFINED = re.compile(r"^(?:class|struct) (\w+)(?: final)?(?: :[^:][^;{]*)? \{", re.MULTILINE)
 types = {}  # first header that defines a type, by namespace and name
 
 
 def sources(folder):
     return sorted(path for path in (root / folder).rglob("*.[ch]pp"))
+
+
+declared = {name for path in sources("include") for name in DECLARED.findall(path.read_text())}
+
+
+def public_names(text):
+    """Beginnings of the lines of a header's declarations in namespace pcor, not in one nested in it."""
+    nested = []
+    for line in text.splitlines():
+        if opened := re.match(r"namespace ([\w:]+) \{", line):
+            nested.append(opened.group(1))
+        elif line.startswith("}  // namespace"):
+            nested.pop()
+        elif nested == ["pcor"] and re.match(r"\w", line):
+            yield line
 
 
 def included_by(path):
@@ -39,16 +57,19 @@ for folder in ("include", "src", "tests", "tools", "benchmarks"):
         if re.search(r'#\s*include\s*["<]\.\./', text):
             trouble.append(f"{where}: an include climbs through ..; name headers of src from src")
         opens = re.findall(r"^namespace (pcor(?:::\w+)*) \{", text, re.MULTILINE)
-        if folder == "src" and path.suffix == ".hpp" and any(not each.startswith("pcor::internal") for each in opens):
-            trouble.append(f"{where}: what is not installed belongs in pcor::internal")
+        if folder == "src" and path.suffix == ".hpp":
+            for line in public_names(text):
+                name = DEFINED.match(line) or DECLARED.match(line)
+                if not name or name.group(1) not in declared:
+                    trouble.append(f"{where}: what is not installed belongs in pcor::internal: {line}")
         calls_c_library = re.search(r"\bnc_[a-z_0-9]+\s*\(|#\s*include\s*<netcdf\.h>", text)
         if folder == "src" and calls_c_library and path.name != "netcdf_c.cpp":
             trouble.append(f"{where}: calls the netCDF C library; use netcdf-cxx4, and what that lacks from flight/netcdf_c.hpp")
-        if folder == "include" and any(each.startswith("pcor::internal") for each in opens):
-            trouble.append(f"{where}: an installed header has names in pcor::internal")
+        if folder == "include" and re.search(r"\binternal::|\bnamespace (\w+::)*internal\b", text):
+            trouble.append(f"{where}: an installed header names pcor::internal")
 
         if folder in ("include", "src") and path.suffix == ".hpp":
-            for type_name in re.findall(r"^(?:class|struct) (\w+)(?: final)?(?: :[^:][^;{]*)? \{", text, re.MULTILINE):
+            for type_name in DEFINED.findall(text):
                 first = types.setdefault((*opens, type_name), where)
                 if first != where:
                     trouble.append(f"{where}: {'::'.join(opens)}::{type_name} is also a type of {first}; the linker keeps one of them")

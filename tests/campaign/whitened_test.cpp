@@ -12,6 +12,7 @@
 #include "support/thread_team.hpp"
 
 using namespace pcor::internal;
+using pcor::FlightPartition;
 
 namespace {
 

@@ -13,6 +13,7 @@
 #include "support/bins.hpp"
 
 using namespace pcor::internal;
+using pcor::FlightPartition;
 using pcor::test::bin_step;
 
 using pcor::Bounds;

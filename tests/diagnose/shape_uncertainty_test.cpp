@@ -10,6 +10,7 @@
 #include "support/bins.hpp"
 
 using namespace pcor::internal;
+using pcor::FlightPartition;
 using pcor::Quantity;
 using pcor::test::bin_step;
 

@@ -17,6 +17,7 @@
 #include "support/thread_team.hpp"
 
 using namespace pcor::internal;
+using pcor::FlightPartition;
 using pcor::test::bin_step;
 
 namespace {

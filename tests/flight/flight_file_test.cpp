@@ -10,9 +10,9 @@
 #include "support/values_of.hpp"
 
 using pcor::Flight;
+using pcor::FlightFile;
 using pcor::FlightWriter;
 using pcor::RecordBlock;
-using pcor::internal::FlightFile;
 using pcor::test::values_of;
 using testing::ElementsAre;
 using testing::IsNan;

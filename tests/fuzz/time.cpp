@@ -14,7 +14,7 @@ namespace {
 
 /// File that contains only times. Lines of the text: units, calendar, FlightDate, TimeInterval, base time,
 /// times.
-class TimesFile final : public pcor::internal::FlightFile {
+class TimesFile final : public pcor::FlightFile {
  public:
   explicit TimesFile(const std::string& text) {
     std::istringstream lines(text);

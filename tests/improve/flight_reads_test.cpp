@@ -35,8 +35,8 @@ class CountingReference final : public Reference {
     return laser_->read(flight, time, notes);
   }
 
-  std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,
-                                                   const internal::ModelOnSamples& model) const override {
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
     ++counts_->residuals;
     return laser_->on(samples, model);
   }

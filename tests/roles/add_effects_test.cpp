@@ -13,8 +13,6 @@
 #include "support/synthetic_samples.hpp"
 #include "support/temporary_directory.hpp"
 
-using namespace pcor::internal;
-
 using pcor::Error;
 using pcor::ModelDefinition;
 using pcor::ModelEffect;

@@ -14,9 +14,7 @@
 
 namespace pcor {
 
-namespace internal {
-class FlightPartition;
-}
+class FlightPartition;  // defined in src/parallel
 
 /// Options for reading the flights of a set.
 struct FlightSetOptions {
@@ -73,7 +71,7 @@ class FlightSet {
   const std::filesystem::path& path(std::size_t flight) const;
 
   Communicator& comm() const { return *comm_; }
-  const internal::FlightPartition& share() const { return *share_; }
+  const FlightPartition& share() const { return *share_; }
 
   /// Set of one flight, for this process only.
   FlightSet only(std::size_t flight) const;
@@ -114,10 +112,10 @@ class FlightSet {
   struct Entry;
   struct Memory;
 
-  FlightSet(std::vector<std::shared_ptr<Entry>> entries, internal::FlightPartition share, Communicator& comm);
+  FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightPartition share, Communicator& comm);
 
   std::vector<std::shared_ptr<Entry>> entries_{};
-  std::shared_ptr<const internal::FlightPartition> share_;
+  std::shared_ptr<const FlightPartition> share_;
   Communicator* comm_;
 };
 

@@ -14,9 +14,7 @@
 
 namespace pcor {
 
-namespace internal {
-class FlightFile;
-}
+class FlightFile;  // defined in src/flight: a file of any format
 
 /// Consecutive records of a flight.
 struct RecordBlock {
@@ -105,14 +103,14 @@ class Flight {
                   TimestampAlignment timestamp_alignment = TimestampAlignment::begin);
 
   /// Opens a flight from an open file of any format.
-  Flight(std::unique_ptr<internal::FlightFile> file, TimestampAlignment timestamp_alignment);
+  Flight(std::unique_ptr<FlightFile> file, TimestampAlignment timestamp_alignment);
 
   Flight(Flight&&) noexcept;
   Flight& operator=(Flight&&) noexcept;
   ~Flight();
 
   /// File, which stays open for the lifetime of the flight.
-  const internal::FlightFile& file() const;
+  const FlightFile& file() const;
 
   const std::filesystem::path& path() const;
   std::size_t records() const;

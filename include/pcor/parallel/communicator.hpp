@@ -10,10 +10,6 @@
 
 namespace pcor {
 
-namespace internal {
-struct Message;
-}
-
 /// Group of processes or threads that work together. All ranks run the same program on the same arguments,
 /// each processes some of the flights, and results are gathered on all ranks: every rank obtains the same
 /// result, equal to that of a serial run bit by bit on identical processors.
@@ -49,10 +45,12 @@ class Communicator {
   std::optional<Error> leave(const std::optional<Error>& error = std::nullopt);
 
  private:
+  struct Message;
+
   /// Gives each rank the bytes of all, in the order of ranks.
   virtual std::vector<std::string> exchange(const std::string& own) { return {own}; }
 
-  std::vector<internal::Message> talk(const internal::Message& own);
+  std::vector<Message> talk(const Message& own);
 
   bool has_parted_ = false;
   std::optional<Error> parted_with_{};

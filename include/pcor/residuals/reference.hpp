@@ -10,10 +10,9 @@
 
 namespace pcor {
 
-namespace internal {
+// Defined in src/residuals: a model, and a reference, on the samples of one flight.
 class ModelOnSamples;
 class ReferenceOnSamples;
-}  // namespace internal
 
 /// Measurement that a model is compared with.
 ///
@@ -70,8 +69,8 @@ class Reference {
   virtual double window() const { return 0.0; }
 
   /// Evaluates the reference at every sample. Both arguments must outlive the result.
-  virtual std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,
-                                                           const internal::ModelOnSamples& model) const = 0;
+  virtual std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                                 const ModelOnSamples& model) const = 0;
 };
 
 /// References used together. The first one determines every single figure that is reported.

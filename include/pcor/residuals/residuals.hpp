@@ -123,8 +123,8 @@ class Residuals {
 
  private:
   std::shared_ptr<const FlightSamples> samples_;
-  std::unique_ptr<internal::ModelOnSamples> model_;
-  std::unique_ptr<internal::ReferenceOnSamples> reference_;
+  std::unique_ptr<ModelOnSamples> model_;
+  std::unique_ptr<ReferenceOnSamples> reference_;
   std::vector<double> parameters_;
   std::vector<bool> terms_;   // one per parameter: whether delta-p alone depends on it, as a linear term
   std::vector<bool> linear_;  // one per parameter: linear term without a minimum of delta-p

@@ -9,7 +9,7 @@ namespace pcor {
 struct FastSeries {
   std::vector<double> values{};
   std::size_t in_record = 1;
-  double min_period = 0.0;  ///< s, to which its rates go (`internal::signal_band_of`)
+  double min_period = 0.0;  ///< s, to which its rates go
 };
 
 }  // namespace pcor
