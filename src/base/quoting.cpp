@@ -105,7 +105,7 @@ std::string sanitize_line(std::string_view message) {
 
 void put_sanitized(std::string_view message, void (*put)(std::string_view)) { each_piece(message, put); }
 
-std::string shown_text(std::string_view text) {
+std::string sanitize_text(std::string_view text) {
   std::string shown;
   for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
     shown += one_line(text.substr(0, end)) + "\n";

@@ -57,13 +57,12 @@ struct Allowed {
 };
 
 Allowed allowed_by(const Flight& flight, const ModelDefinition& model) {
-  constexpr std::string_view filtered_and_late = "PS_A";  // avionics
   Allowed allowed;
   allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
   if (!allowed.laser) return allowed;
   const VariableNaming& family = family_of(model, flight);
   for (const PressurePair& pair : family.measured) {
-    if (pair.static_pressure != filtered_and_late && is_other_pair(model, pair) &&
+    if (pair.static_pressure != avionics_static_pressure && is_other_pair(model, pair) &&
         has_values(flight, family, pair))
       allowed.pairs.emplace_back(pair.static_pressure, pair.dynamic_pressure);
   }

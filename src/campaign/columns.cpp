@@ -139,7 +139,7 @@ System system_of(ModelDefinition model, const CandidateModels& set, bool of_refe
 
 /// Computes the columns of the candidates of one system at some samples: the amount that each coefficient
 /// adds at its location, through the chain of the system.
-/// @param at_places for each location the derivative of the residual with respect to an amount added there,
+/// @param by_location for each location the derivative of the residual with respect to an amount added there,
 /// at these samples; if empty, the columns are the added amounts with the sign inverted. Where it is zero,
 /// the columns are zero, even if an input has no value
 /// @param quantities receive their values at these samples
@@ -172,7 +172,7 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
 }
 
 /// Converts columns of added amounts, sample by sample, to columns of residuals that depend on neighbouring
-/// samples. @param first_place among the parameters of the residuals
+/// samples. @param first_location among the parameters of the residuals
 void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluation>& evaluations,
                          std::size_t first_location, const std::vector<std::size_t>& used,
                          const std::vector<std::size_t>& needed, Eigen::MatrixXf& columns) {

@@ -28,7 +28,7 @@ std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::si
 
 constexpr double block_time = 60.0;  // s
 
-/// A flight in bins, for the members of a team that do not own it: derivatives or other columns, and the
+/// A flight in bins, for the ranks that do not own it: derivatives or other columns, and the
 /// residual last.
 using BinnedRows = std::pair<Binning, Eigen::MatrixXd>;
 

@@ -139,11 +139,12 @@ ReportTable table_of(const std::vector<AngleSensitivity>& manoeuvres, const Angl
   for (const AngleSensitivity& each : manoeuvres) {
     std::vector<std::string> row{each.flown.location(), each.reference.name,
                                  fmt::format("{:.1f}", 0.5 * ends_of_sine * each.swing),
-                                 with_error(each.slope, "", 3)};
+                                 format_number(each.slope, "", 3)};
     if (with_ratio)
-      row.push_back(std::isfinite(each.per_ratio.value) ? with_error(each.per_ratio, "", 1) : "not recorded");
-    if (check.with_square) row.push_back(with_error(each.bend, "", 4));
-    row.insert(row.end(), {with_error(each.across(), ""), fmt::format("{:.2f}", each.scatter)});
+      row.push_back(std::isfinite(each.per_ratio.value) ? format_number(each.per_ratio, "", 1)
+                                                        : "not recorded");
+    if (check.with_square) row.push_back(format_number(each.bend, "", 4));
+    row.insert(row.end(), {format_number(each.across(), ""), fmt::format("{:.2f}", each.scatter)});
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -191,11 +192,12 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
       manoeuvres.size(), info_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s",
-      references_of(manoeuvres), with_error(slope, "hPa/deg", 3), check.angle, with_error(across, "hPa"));
+      references_of(manoeuvres), format_number(slope, "hPa/deg", 3), check.angle,
+      format_number(across, "hPa"));
   if (check.with_square) {
     numbers.push_back(judged(bent, min_swing_change, "hPa", "quadratic part at the end of the swing"));
     result.finding += fmt::format(" With its square the residual changes by {}, {} at the end of the swing.",
-                                  with_error(bend, "hPa/deg2", 4), with_error(bent, "hPa"));
+                                  format_number(bend, "hPa/deg2", 4), format_number(bent, "hPa"));
   }
   decide(std::move(numbers), result);
   const auto uncorrected =

@@ -63,7 +63,7 @@ Systems systems_of(const Flight& flight, const PressurePair& of_model) {
     return pair.static_pressure == of_model.static_pressure;
   });
   // A corrected pair and the pair of the avionics are two systems if there is no further pair.
-  const bool beside_avionics = pairs.size() == 1 && pairs.front().static_pressure == "PS_A";
+  const bool beside_avionics = pairs.size() == 1 && pairs.front().static_pressure == avionics_static_pressure;
   if (!corrected || beside_avionics) {
     systems.own = of_model;
   } else if (!pairs.empty()) {
@@ -151,7 +151,7 @@ void add_note_on_small(CheckResult& result) {
   constexpr double significant = 3.0;  // standard errors
   const double deviations = std::abs(result.key.value) / result.key.standard_error;
   const bool is_small = result.ran && std::abs(result.key.value) <= result.key.matters;
-  if (!is_small || !(deviations > significant) || result.name == "spectrum") return;
+  if (!is_small || !(deviations > significant)) return;
   result.notes.push_back(
       fmt::format("the number is {:.0f} standard errors from zero: significant, but negligible", deviations));
 }
@@ -222,8 +222,8 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
     checks.results.push_back(read.empty() ? not_run(fmt::format("{}", fmt::join(unusable, "; ")))
                                           : each.run(read));
     checks.results.back().name = each.name;
+    if (each.expects_zero) add_note_on_small(checks.results.back());
   }
-  for (CheckResult& result : checks.results) add_note_on_small(result);
   checks.pictures = pictures_of(read);
   return checks;
 }

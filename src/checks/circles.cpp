@@ -35,7 +35,7 @@ ReportTable table_of(const std::vector<Circle>& circles) {
     table.rows.push_back({flown.location(), fmt::format("{:+.0f}", fit.turned),
                           fmt::format("{:.0f}", direction_of(-fit.east_wind.value, -fit.north_wind.value)),
                           fmt::format("{:.1f}", std::hypot(fit.east_wind.value, fit.north_wind.value)),
-                          with_error(fit.airspeed_error, ""), with_error(fit.heading_error, ""),
+                          format_number(fit.airspeed_error, ""), format_number(fit.heading_error, ""),
                           fmt::format("{:.2f}", fit.rms)});
   }
   return table;
@@ -85,7 +85,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
       "m/s, as if delta-p were off by {}.",
       circles.size(), circles.size() == 1 ? "" : "s", to_port,
       circles.size() - static_cast<std::size_t>(to_port), error.value < 0.0 ? "low" : "high",
-      std::abs(error.value), error.error, with_error(hpa, "hPa"));
+      std::abs(error.value), error.error, format_number(hpa, "hPa"));
   result.cannot_see =
       "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only, "
       "in a bank. Sideslip, an offset of the heading and the angle of attack times the bank are "

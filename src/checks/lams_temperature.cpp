@@ -73,8 +73,9 @@ Differences all_differences(const CheckedFlights& flights) {
   return all;
 }
 
+/// Values of the samples that meet a condition; NaN for the others.
 template <class Condition>
-std::vector<double> location(const Differences& all, const Condition& condition) {
+std::vector<double> values_if(const Differences& all, const Condition& condition) {
   std::vector<double> values(all.values.size(), nan);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (condition(i)) values[i] = all.values[i];
@@ -90,7 +91,7 @@ struct Part {
 
 template <class Condition>
 Part part_of(const Differences& all, std::string name, const Condition& condition) {
-  return {std::move(name), mean_of(location(all, condition), all.time, all.step)};
+  return {std::move(name), mean_of(values_if(all, condition), all.time, all.step)};
 }
 
 ReportTable part_table(const std::vector<Part>& parts) {
@@ -138,7 +139,7 @@ void add_noise_by_period(const Differences& all, CheckResult& result) {
   std::array<std::vector<Segment>, 2> segments;
   for (const std::size_t part : {0U, 1U}) {
     values[part] =
-        location(all, [&](std::size_t i) { return all.near_ground[i] == (part == 0) && !all.in_cloud[i]; });
+        values_if(all, [&](std::size_t i) { return all.near_ground[i] == (part == 0) && !all.in_cloud[i]; });
     segments[part] = contiguous_segments(values[part], all.time, all.step);
   }
   for (std::size_t width = 1; 2.0 * static_cast<double>(width) * all.step <= max_period; width *= 2) {
@@ -217,19 +218,19 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   CheckResult result;
   const Estimate offset = outside.fit.coefficients[0];
   decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
-  const std::vector<double> clear_values = location(all, clear);
+  const std::vector<double> clear_values = values_if(all, clear);
   const double noise = noise_floor(clear_values, all.time, all.step).rms;
   result.finding = fmt::format(
       "Out of cloud the laser temperature minus the thermometer temperature is {}, with a scatter of {:.2f} "
       "K, of which {:.2f} K is noise",
-      with_error(offset, "K"), outside.fit.rms, noise);
+      format_number(offset, "K"), outside.fit.rms, noise);
   add_number("offset", "_k", offset, result);
   result.numbers.insert(result.numbers.end(), {{"scatter_k", outside.fit.rms},
                                                {"noise_k", noise},
                                                {"samples", static_cast<double>(outside.fit.samples)}});
   if (inside.fit.samples >= min_samples) {
     const Estimate in_cloud_offset = inside.fit.coefficients[0];
-    result.finding += fmt::format("; in cloud it is {}", with_error(in_cloud_offset, "K"));
+    result.finding += fmt::format("; in cloud it is {}", format_number(in_cloud_offset, "K"));
     add_number("cloud_offset", "_k", in_cloud_offset, result);
     const Estimate change{in_cloud_offset.value - offset.value,
                           std::hypot(in_cloud_offset.error, offset.error)};

@@ -99,7 +99,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
   std::vector<TestStatistic> numbers{judged(fit.offset, min_thermometer_error, "K", "thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
-                  fit.layers, fit.layers == 1 ? "" : "s", with_error(fit.offset, "K"));
+                  fit.layers, fit.layers == 1 ? "" : "s", format_number(fit.offset, "K"));
   std::vector<double> temperatures;
   for (const FlightLayers& flight : all) {
     for (const Layer& layer : flight.layers) temperatures.push_back(layer.measured_temperature());
@@ -119,13 +119,13 @@ CheckResult check_layers(const CheckedFlights& flights) {
     if (over_range.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(over_range));
     result.finding += at_freezing.error > max_useful_error
                           ? fmt::format("; its slope from {} is undetermined ({} per degree).", span,
-                                        with_error(fit.c1, "K", 3))
+                                        format_number(fit.c1, "K", 3))
                           : fmt::format("; as a line, {} at 0 degC and {} per degree.",
-                                        with_error(at_freezing, "K"), with_error(fit.c1, "K", 4));
+                                        format_number(at_freezing, "K"), format_number(fit.c1, "K", 4));
     result.notes.push_back(
         fmt::format("the form of Cooper (2012) is T_m + c0 + c1 T_m with absolute temperatures; c0 is {} "
                     "and c1 {}; their errors are almost fully correlated",
-                    with_error(fit.correction_at(0.0), "K"), with_error(fit.c1, "K/K", 4)));
+                    format_number(fit.correction_at(0.0), "K"), format_number(fit.c1, "K/K", 4)));
   }
   decide(std::move(numbers), result);
   if (fit.error_scale > 1.0) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "numerics/missing.hpp"
+#include "roles/aircraft_family.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -35,8 +36,9 @@ std::vector<double> static_of(const MeasuredPair& pair) { return pair.static_pre
 
 /// Whether one of the two systems is the avionics.
 bool with_avionics(const CheckedFlight& flight) {
-  return std::any_of(flight.measured.begin(), flight.measured.end(),
-                     [](const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; });
+  return std::any_of(flight.measured.begin(), flight.measured.end(), [](const MeasuredPair& pair) {
+    return pair.name.rfind(avionics_static_pressure, 0) == 0;
+  });
 }
 
 /// Airborne records; with the avionics, those at which neither pressure changes faster than
@@ -232,7 +234,7 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
       "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
       "rms {:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter "
       "of {:.2f} hPa.",
-      two, one, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
+      two, one, format_number(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
       fit.ordinary.rms, statics.difference.value, statics.scatter);
   result.cannot_see =
       "The check does not detect static defects, which cancel in the total pressure, and losses common to "
@@ -262,8 +264,8 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   result.finding = fmt::format(
       "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
       "{:.6f} and rms {:.3f} hPa about the line.",
-      first->second_name, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
-      fit.ordinary.rms);
+      first->second_name, format_number(fit.difference, "hPa", 3), fit.ordinary.slope,
+      fit.ordinary.slope_error, fit.ordinary.rms);
   if (!first->second_corrected) {
     // The defect of the second system is unknown, so a difference does not contradict the model.
     withhold("the second system is uncorrected, so it does not test the model", result);

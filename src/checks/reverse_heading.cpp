@@ -147,10 +147,10 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
       {"first leg", "sum, m/s", "due to headings", "airspeed, m/s", "delta-p, hPa", "temperature, K"}};
   for (const Pair& pair : pairs) {
     const LegPair& result = pair.result;
-    table.rows.push_back({pair.first.flown.location(), with_error(result.sum, ""),
-                          fmt::format("{:+.2f}", result.heading_share), with_error(result.airspeed_error, ""),
-                          with_error(result.pressure_error, ""),
-                          with_error(result.temperature_error, "", 1)});
+    table.rows.push_back({pair.first.flown.location(), format_number(result.sum, ""),
+                          fmt::format("{:+.2f}", result.heading_share),
+                          format_number(result.airspeed_error, ""), format_number(result.pressure_error, ""),
+                          format_number(result.temperature_error, "", 1)});
   }
   return table;
 }
@@ -215,9 +215,9 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {} instead of zero: the true airspeed is too {} "
       "by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by {}.",
-      pairs.size(), pairs.size() == 1 ? "" : "s", with_error({-2.0 * error.value, 2.0 * error.error}, "m/s"),
-      error.value < 0.0 ? "low" : "high", std::abs(error.value), error.error, with_error(hpa, "hPa"),
-      with_error(kelvin, "K", 1));
+      pairs.size(), pairs.size() == 1 ? "" : "s",
+      format_number({-2.0 * error.value, 2.0 * error.error}, "m/s"), error.value < 0.0 ? "low" : "high",
+      std::abs(error.value), error.error, format_number(hpa, "hPa"), format_number(kelvin, "K", 1));
   result.cannot_see =
       "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only. "
       "If pressures were corrected sample by sample with LAMS, or the model was fitted to LAMS, the airspeed "
@@ -235,7 +235,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     add_number("laser_airspeed_error", "_m_s", laser, result);
     result.notes.push_back(
         "Error of the airspeed from the laser, equivalent to a correction of each sample with LAMS: " +
-        with_error(laser, "m/s"));
+        format_number(laser, "m/s"));
   }
   if (pairs.size() < min_for_scatter)
     result.notes.push_back(

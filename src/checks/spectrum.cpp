@@ -197,7 +197,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   if (std::isfinite(per_speed))
     result.finding += fmt::format(" (equivalent to {:.2f} m/s of airspeed)", floor.value / per_speed);
   result.finding += fmt::format("; over the last two octaves power varies as frequency to the {}: {}.",
-                                with_error(fall, ""), in_words(fall));
+                                format_number(fall, ""), in_words(fall));
   const auto has_series = [source](const CheckedFlight& flight) { return has_value(source->series(flight)); };
   note_other_steps(flights, spectrum.step, has_series, result.notes);
   result.cannot_see =

@@ -30,7 +30,7 @@ struct Trend {
   Estimate pressure_error{};  ///< error of delta-p at the fast end if correct at the slow end, hPa
 };
 
-struct Run {
+struct SpeedRun {
   Flown flown;
   double airspeed_range = 0.0;  ///< m/s
   Estimate dynamic_slope{};     ///< slope of DVALUE, m per hPa of dynamic pressure
@@ -69,9 +69,9 @@ std::vector<double> height_above_pressure(const Flown& flown, bool is_missing, d
   return height;
 }
 
-Run run_of(const Flown& flown) {
+SpeedRun run_of(const Flown& flown) {
   const FlightAir& air = flown.flight->air;
-  Run run;
+  SpeedRun run;
   run.flown = flown;
   const auto [slow, fast] = range_of(flown.of(air.airspeed));
   run.airspeed_range = fast - slow;
@@ -103,23 +103,23 @@ Estimate decisive(const Estimate& height, const Estimate& wind) {
 }
 
 /// @param digits of the scatter and the range; slopes have two more
-ReportTable table_of(const std::vector<Run>& runs, Trend Run::*trend, const char* title, const char* caption,
-                     const std::string& unit, int digits) {
-  const bool is_height = trend == &Run::height;
+ReportTable table_of(const std::vector<SpeedRun>& runs, Trend SpeedRun::*trend, const char* title,
+                     const char* caption, const std::string& unit, int digits) {
+  const bool is_height = trend == &SpeedRun::height;
   ReportTable table{title,
                     caption,
                     {"run", "airspeed, m/s", "sd, " + unit, "range, " + unit, "slope, " + unit + " per m/s"}};
   if (is_height) table.headers.emplace_back("slope, m per hPa of q");
   table.headers.emplace_back("delta-p, hPa");
-  for (const Run& run : runs) {
+  for (const SpeedRun& run : runs) {
     const Trend& of_run = run.*trend;
     if (!known(of_run)) continue;
     std::vector<std::string> row{run.flown.location(), fmt::format("{:.0f}", run.airspeed_range),
                                  fmt::format("{:.{}f}", of_run.scatter, digits),
                                  fmt::format("{:.{}f}", of_run.range, digits),
-                                 with_error(of_run.slope, "", digits + 2)};
-    if (is_height) row.push_back(with_error(run.dynamic_slope, "", digits + 2));
-    row.push_back(with_error(of_run.pressure_error, ""));
+                                 format_number(of_run.slope, "", digits + 2)};
+    if (is_height) row.push_back(format_number(run.dynamic_slope, "", digits + 2));
+    row.push_back(format_number(of_run.pressure_error, ""));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -133,9 +133,9 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
     return not_run("no flight " + missing_for_tail_wind(flights));
   const std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
   if (flown.empty()) return not_flown(flights, Regime::speed_run);
-  std::vector<Run> runs;
+  std::vector<SpeedRun> runs;
   for (const Flown& each : flown) {
-    Run run = run_of(each);
+    SpeedRun run = run_of(each);
     if (known(run.height) || known(run.wind)) runs.push_back(std::move(run));
   }
   if (runs.empty()) {
@@ -145,21 +145,22 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                                wind.empty() ? "" : " (no flight " + wind + ")"));
   }
   CheckResult result;
-  const Estimate height = combined(each_of(runs, [](const Run& run) { return run.height.pressure_error; }));
-  const Estimate wind = combined(each_of(runs, [](const Run& run) { return run.wind.pressure_error; }));
+  const Estimate height =
+      combined(each_of(runs, [](const SpeedRun& run) { return run.height.pressure_error; }));
+  const Estimate wind = combined(each_of(runs, [](const SpeedRun& run) { return run.wind.pressure_error; }));
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
   const Estimate across = decisive(height, wind);
   decide({judged(across, min_run_change, "hPa", "change from slow to fast")}, result);
-  const auto average = [&](Trend Run::*trend, double Trend::*number) {
-    return mean_of(each_of(runs, [=](const Run& run) { return run.*trend.*number; }));
+  const auto average = [&](Trend SpeedRun::*trend, double Trend::*number) {
+    return mean_of(each_of(runs, [=](const SpeedRun& run) { return run.*trend.*number; }));
   };
   result.finding = fmt::format("Over {} speed run{}", runs.size(), runs.size() == 1 ? "" : "s");
   if (has_height) {
     result.finding += fmt::format(
         " DVALUE scatters by {:.1f} m and varies with the airspeed as if delta-p were off by {} from the "
         "slow to the fast end",
-        average(&Run::height, &Trend::scatter), with_error(height, "hPa"));
+        average(&SpeedRun::height, &Trend::scatter), format_number(height, "hPa"));
   } else {
     result.notes.push_back("DVALUE not used: " + height_problem(runs.front().flown.flight->air));
   }
@@ -167,8 +168,8 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
     result.finding += fmt::format(
         "{} the tail wind scatters by {:.2f} m/s, over a range of {:.1f} m/s, and varies with the airspeed "
         "as if delta-p were off by {}",
-        has_height ? ";" : "", average(&Run::wind, &Trend::scatter), average(&Run::wind, &Trend::range),
-        with_error(wind, "hPa"));
+        has_height ? ";" : "", average(&SpeedRun::wind, &Trend::scatter),
+        average(&SpeedRun::wind, &Trend::range), format_number(wind, "hPa"));
   } else {
     result.notes.push_back("the tail wind is not used: no flight " + missing_for_tail_wind(flights));
   }
@@ -178,19 +179,19 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
       "and cannot separate angle of attack, thrust and dynamic pressure, which change together in these "
       "runs.";
   result.numbers = {{"runs", static_cast<double>(runs.size())},
-                    {"d_value_sd_m", average(&Run::height, &Trend::scatter)},
-                    {"d_value_range_m", average(&Run::height, &Trend::range)},
-                    {"tail_wind_sd_m_s", average(&Run::wind, &Trend::scatter)},
-                    {"tail_wind_range_m_s", average(&Run::wind, &Trend::range)}};
+                    {"d_value_sd_m", average(&SpeedRun::height, &Trend::scatter)},
+                    {"d_value_range_m", average(&SpeedRun::height, &Trend::range)},
+                    {"tail_wind_sd_m_s", average(&SpeedRun::wind, &Trend::scatter)},
+                    {"tail_wind_range_m_s", average(&SpeedRun::wind, &Trend::range)}};
   add_number("delta_p_across", "_hpa", height, result);
   add_number("delta_p_across_from_wind", "_hpa", wind, result);
   result.tables = {
-      table_of(runs, &Run::height, "DVALUE in speed runs",
+      table_of(runs, &SpeedRun::height, "DVALUE in speed runs",
                "Scatter and range of DVALUE (GPS height minus pressure altitude), its slopes against the "
                "airspeed and the dynamic pressure fitted with a drift in time, and the error of delta-p from "
                "the slow to the fast end that the first slope implies.",
                "m", 1),
-      table_of(runs, &Run::wind, "Tail wind in speed runs",
+      table_of(runs, &SpeedRun::wind, "Tail wind in speed runs",
                "Scatter and range of the tail wind, its slope against the airspeed fitted with a drift in "
                "time, and the error of delta-p from the slow to the fast end that it implies.",
                "m/s", 2)};
@@ -199,7 +200,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                       result.tables.end());
   const auto column = [&](const char* name, const char* title, const char* unit,
                           std::vector<double> FlightAir::*series, bool is_departure) {
-    result.columns.push_back(column_in(flights, name, title, unit, runs, [=](const Run& run) {
+    result.columns.push_back(column_in(flights, name, title, unit, runs, [=](const SpeedRun& run) {
       const std::vector<double> values = run.flown.of(run.flown.flight->air.*series);
       return is_departure ? less_mean(values) : values;
     }));

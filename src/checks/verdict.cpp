@@ -81,8 +81,8 @@ void add_number(const std::string& name, const std::string& unit, const Estimate
   result.numbers.emplace_back(name + "_stderr" + unit, number.error);
 }
 
-std::string with_error(const Estimate& number, const std::string& unit, int digits) {
-  return fmt::format("{:+.{}f} +- {:.{}f}{}{}", number.value, digits, number.error, digits,
+std::string format_number(const Estimate& number, const std::string& unit, int decimals) {
+  return fmt::format("{:+.{}f} +- {:.{}f}{}{}", number.value, decimals, number.error, decimals,
                      unit.empty() ? "" : " ", unit);
 }
 

@@ -30,7 +30,7 @@ void withhold(const std::string& reason, CheckResult& result);
 void add_number(const std::string& name, const std::string& unit, const Estimate& number,
                 CheckResult& result);
 
-/// Text like "+0.31 +- 0.04 hPa".
-std::string with_error(const Estimate& number, const std::string& unit, int digits = 2);
+/// Text like "+0.31 +- 0.04 hPa", so that the numbers of a table have equal decimals.
+std::string format_number(const Estimate& number, const std::string& unit, int decimals = 2);
 
 }  // namespace pcor::internal

@@ -235,7 +235,7 @@ void ComparisonPanels::summarise() {
       report().summary.push_back(sentence(text));
   }
   const ModelComparison& last = comparison_.models.back();
-  if (std::string text = shown_text(comparison_.flights.size(), last.flights.size()); !text.empty())
+  if (std::string text = format_shown_flights(comparison_.flights.size(), last.flights.size()); !text.empty())
     report().summary.push_back(std::move(text));
   const std::size_t min_samples = std::max(min_in_regime, last.all.samples / 100);
   const PartStatistics* worst = nullptr;

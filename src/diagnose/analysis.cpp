@@ -40,7 +40,7 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
                                             static_cast<double>(held_out_parts)));
 }
 
-Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups,
+Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
                    const std::vector<Eigen::VectorXd>& added, Eigen::VectorXd prior)
     : share_(columns.share),
       first_share_(columns.share),  // replaced below, where the flights against the first reference are known

@@ -36,7 +36,7 @@ struct Competition {
 ///
 /// Each flight has one entry per reference; entries against the first reference come first, and each
 /// reference has its separate noise. Functions without a flight number refer to the first reference; flight
-/// numbers count all entries. A member of a team has records, bins and rows of its local flights, and only
+/// numbers count all entries. A rank has records, bins and rows of its local flights, and only
 /// the outlines of the others.
 class Analysis {
  public:
@@ -44,7 +44,7 @@ class Analysis {
   /// @param added coefficients of the base of effects of the flow that were found before and are in the model
   /// now, one vector for each effect
   /// @param prior inverse prior variances of the coefficients of the base about the model; empty: none
-  Analysis(TeamColumns columns, std::vector<ColumnGroup> groups,
+  Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
            const std::vector<Eigen::VectorXd>& added = {}, Eigen::VectorXd prior = {});
 
   /// Partition of the flights against the first reference.

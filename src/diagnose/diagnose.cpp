@@ -67,7 +67,7 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
   return flights;
 }
 
-/// Keeps the records of the flights in pictures and shares them with all members.
+/// Keeps the records of the flights in pictures and shares them with all ranks.
 void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& requested,
                  std::vector<FlightDiagnosis>& flights) {
   std::vector<std::size_t> kept;
@@ -150,7 +150,7 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
 }
 
 /// Residuals of the input model: used samples, later parts of the flights, and samples with flaps extended.
-void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnosis) {
+void add_statistics(const PartitionedColumns& columns, double share, Diagnosis& diagnosis) {
   ResidualSums used;
   ResidualSums with_flaps;
   FittedMeans means;
@@ -177,7 +177,7 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
 }
 
 /// Samples of all flights by reason of exclusion.
-std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
+std::array<std::size_t, mask_count> count_masks(const PartitionedColumns& columns) {
   using Counts = std::array<std::size_t, mask_count>;
   Counts all{};
   for (const Counts& part : columns.share.of_each_flight<Counts>([&columns](std::size_t f) {
@@ -242,7 +242,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
     diagnosis.reference += (diagnosis.reference.empty() ? "" : "; ") + reference->description();
   CandidateSet set =
       find_candidates(model, options.formulas, files, references, dates, options.trust_reference);
-  TeamColumns columns = columns_of_flights(files, files.size(), model, set, options, diagnosis.notes);
+  PartitionedColumns columns = columns_of_flights(files, files.size(), model, set, options, diagnosis.notes);
   diagnosis.masks = count_masks(columns);
   leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/format_estimate.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
@@ -62,10 +63,10 @@ ReportTable variables_table(const Unexplained& unexplained) {
       {"variable", "R2, curve", "R2, line", "slope of the line", "hPa per", "p", "formula", "what"}};
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     const bool has_line = variable.slope_error > 0.0;
-    table.rows.push_back({variable.name, percent(variable.r2), has_line ? percent(variable.linear_r2) : "",
-                          has_line ? with_error(variable.slope, variable.slope_error) : "no line",
-                          variable.unit, probability(variable.p_value), variable.formula,
-                          variable.description});
+    table.rows.push_back(
+        {variable.name, percent(variable.r2), has_line ? percent(variable.linear_r2) : "",
+         has_line ? format_estimate(variable.slope, variable.slope_error, PlusSign::never) : "no line",
+         variable.unit, probability(variable.p_value), variable.formula, variable.description});
   }
   return table;
 }
@@ -259,7 +260,7 @@ void DiagnosisPanels::add_info(const Diagnosis& diagnosis, const ModelDefinition
     if (diagnosis.masks[i] > 0)
       excluded.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_info[i].meaning));
   }
-  std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
+  std::string text = format_shown_flights(diagnosis.flights_with_records().size(), diagnosis.flights.size());
   if (!text.empty()) report().summary.push_back(std::move(text));
   if (!excluded.empty()) info.emplace_back("Not used", fmt::format("{}", fmt::join(excluded, "; ")));
   add_flights_to_info();

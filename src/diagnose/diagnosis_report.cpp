@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/format_estimate.hpp>
 #include <pcor/base/utc.hpp>
 
 #include "diagnose/diagnosis_panels.hpp"
@@ -246,7 +247,8 @@ std::string estimates_text(const std::vector<CoefficientEstimate>& estimates) {
   for (const CoefficientEstimate& e : estimates) {
     all.push_back(
         std::isfinite(e.value)
-            ? fmt::format("{} = {}", e.name, with_unit(with_error(e.value, e.standard_error), e.unit))
+            ? fmt::format("{} = {}", e.name,
+                          with_unit(format_estimate(e.value, e.standard_error, PlusSign::never), e.unit))
             : e.name + " unknown");
   }
   return join_list(all);

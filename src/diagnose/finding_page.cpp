@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include <pcor/base/format_estimate.hpp>
 #include <pcor/base/utc.hpp>
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
@@ -111,15 +112,6 @@ std::string with_unit(const std::string& number, const std::string& unit) {
   return unit.empty() || unit == "1" ? number : number + " " + unit;
 }
 
-std::string with_error(double value, double error) {
-  constexpr int most_decimals = 7;
-  if (!std::isfinite(value)) return "unknown";
-  if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
-  const int decimals = decimals_of_error(error);
-  return decimals > most_decimals ? fmt::format("{:.3g} +- {:.2g}", value, error)
-                                  : fmt::format("{0:.{2}f} +- {1:.{2}f}", value, error, decimals);
-}
-
 std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.3f}", value) : "unknown"; }
 
 std::string probability(double p) {
@@ -188,7 +180,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     if (first.slope_error > 0.0) {
       with +=
           fmt::format(", a straight line ({}) {}",
-                      with_unit(with_error(first.slope, first.slope_error),
+                      with_unit(format_estimate(first.slope, first.slope_error, PlusSign::never),
                                 first.unit.empty() || first.unit == "1" ? "hPa" : "hPa per " + first.unit),
                       percent(first.linear_r2));
     }
@@ -201,7 +193,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     all.push_back(
         fmt::format("The mean of {} lies {} hPa {} the mean of the other flights (p = {}). Check the "
                     "maintenance log between these flights.",
-                    step.flight, with_error(std::abs(step.size), step.standard_error),
+                    step.flight, format_estimate(std::abs(step.size), step.standard_error, PlusSign::never),
                     step.size < 0.0 ? "below" : "above", probability(step.p_value)));
   }
   return all;

@@ -13,9 +13,6 @@ namespace pcor::internal::report {
 
 std::string with_unit(const std::string& number, const std::string& unit);
 
-/// A value with its error, both to two digits of the error.
-std::string with_error(double value, double error);
-
 /// Number with three decimals; "unknown" for NaN.
 std::string hpa(double value);
 

@@ -41,7 +41,7 @@ std::vector<double> all_given(const FlightColumns& flight) {
 }
 
 /// Flights as input of the test; the findings are part of the model.
-TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
+PartitionedColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
   std::vector<FlightColumns> flights;
   for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
     const FlightColumns& from = analysis.flights()[f];
@@ -64,7 +64,7 @@ TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
 
 }  // namespace
 
-FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns) {
+FlapsCandidates find_flaps_candidates(const CandidateSet& set, const PartitionedColumns& columns) {
   FlapsCandidates flaps;
   const std::vector<FlightColumns>& flights = columns.flights;
   const auto samples = columns.share.sum_of_each_flight<std::size_t>([&](std::size_t f) {

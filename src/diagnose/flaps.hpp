@@ -18,7 +18,7 @@ struct FlapsCandidates {
 };
 
 /// Without candidates if too few samples have flaps extended.
-FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns);
+FlapsCandidates find_flaps_candidates(const CandidateSet& set, const PartitionedColumns& columns);
 
 /// Tests them together with the model and the findings of `analysis`, and adds the result or its upper limit
 /// to the diagnosis. @param groups of the columns of `flaps`

@@ -94,11 +94,11 @@ References in_order_of_diagnosis(References references) {
   return references;
 }
 
-TeamColumns columns_of_entries(const FlightPartition& share,
-                               const std::function<SamplesOfFlight(std::size_t)>& read,
-                               const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
+PartitionedColumns columns_of_entries(
+    const FlightPartition& share, const std::function<SamplesOfFlight(std::size_t)>& read,
+    const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
   std::vector<FlightColumns> own(share.flights());
-  TeamColumns columns{
+  PartitionedColumns columns{
       share, share.map<FlightColumns>(share.threads(), read, [&](std::size_t entry, SamplesOfFlight samples) {
         own[entry] = make(entry, std::move(samples));
         return outline_of(own[entry]);
@@ -109,8 +109,8 @@ TeamColumns columns_of_entries(const FlightPartition& share,
   return columns;
 }
 
-TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
-                               const CandidateSet& set, const DiagnoseOptions& options, Notes& notes) {
+PartitionedColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelDefinition& model,
+                                      const CandidateSet& set, const DiagnoseOptions& options, Notes& notes) {
   std::vector<std::size_t> file_of_each;
   for (std::size_t r = 0; r < set.references.size(); ++r) {
     for (std::size_t file = 0; file < count; ++file) file_of_each.push_back(file);
@@ -136,13 +136,13 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
     found.file = file_of_each[entry];
     return found;
   };
-  TeamColumns columns = columns_of_entries(files.share().of_entries(file_of_each), read, make);
+  PartitionedColumns columns = columns_of_entries(files.share().of_entries(file_of_each), read, make);
   for (const FlightColumns& flight : columns.flights)
     notes.insert(notes.end(), flight.samples->notes.begin(), flight.samples->notes.end());
   return columns;
 }
 
-void leave_out_empty(TeamColumns& columns) {
+void leave_out_empty(PartitionedColumns& columns) {
   const auto is_left = columns.share.of_each_flight<int>([&](std::size_t number) {
     const FlightColumns& flight = columns.flights[number];
     const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
@@ -160,7 +160,7 @@ void leave_out_empty(TeamColumns& columns) {
 }
 
 std::vector<std::string> troubles_of(
-    const TeamColumns& columns, const std::vector<ColumnGroup>& groups,
+    const PartitionedColumns& columns, const std::vector<ColumnGroup>& groups,
     const std::function<std::vector<double>(const FlightColumns& flight)>& given_of) {
   const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
     const FlightColumns& flight = columns.flights[f];
@@ -174,7 +174,7 @@ std::vector<std::string> troubles_of(
   return troubles;
 }
 
-void drop_untestable(CandidateSet& set, TeamColumns& columns) {
+void drop_untestable(CandidateSet& set, PartitionedColumns& columns) {
   const std::vector<ColumnGroup> groups = groups_of(set, set.candidates);
   std::vector<std::string> troubles =
       troubles_of(columns, groups, [](const FlightColumns& flight) { return flight.given; });
@@ -193,7 +193,7 @@ void drop_untestable(CandidateSet& set, TeamColumns& columns) {
   for (FlightColumns& flight : columns.flights) flight.keep_candidates(kept);
 }
 
-void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamColumns* further) {
+void hold_imitated_coefficients(CandidateSet& set, PartitionedColumns& columns, PartitionedColumns* further) {
   constexpr double notable = 0.03;  // hPa, rms
   const Eigen::Index count = as_index(set.base.size());
   // Products of all columns with each other; the last entry is the number of rows.
@@ -218,7 +218,7 @@ void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamCol
     base.push_back(std::move(coefficient));
   }
   set.base = std::move(base);
-  for (TeamColumns* const each : {&columns, further}) {
+  for (PartitionedColumns* const each : {&columns, further}) {
     if (each == nullptr) continue;
     for (FlightColumns& flight : each->flights) flight.keep_base(kept);
   }

@@ -8,7 +8,7 @@
 
 namespace pcor::internal {
 
-/// Finite values of a variable on all flights of a team, of which every member holds all, 8 bytes each.
+/// Finite values of a variable on all flights; every rank holds all of them, 8 bytes each.
 /// Results do not depend on the distribution of flights.
 struct VariableValues {
   /// @param values_of values of a local flight; values that are not finite are missing

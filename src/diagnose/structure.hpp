@@ -48,7 +48,7 @@ struct DrawnResiduals {
 /// sign-changed residuals, so it may be removed before the chance level is estimated.
 class StructureTest {
  public:
-  /// @param share of the flights: a member of a team has the bins and all other data of its local flights
+  /// @param share of the flights: a rank has the bins and all other data of its local flights
   /// @param binned columns of the model, base and chosen effects, and residuals
   /// @param noise with all drift remaining after the model; @param seed of shifts and signs
   /// @param aside columns to subtract from the residuals that give the chance level; may be empty

@@ -10,8 +10,7 @@
 
 namespace pcor::internal {
 
-/// Variable that may explain structure, with a value at every analysed record of the local flights of a team
-/// member.
+/// Variable that may explain structure, with a value at every analysed record of the local flights of a rank.
 struct TestedVariable {
   std::string name;
   std::string unit{};
@@ -27,7 +26,7 @@ struct TestedVariable {
   std::string sampling{};  ///< description of the resampling to one value per record; empty if not resampled
   std::vector<std::shared_ptr<const std::vector<double>>> values{};
 
-  /// Description without values, as the first file gives it to all members of a team.
+  /// Description without values, as the first file gives it to all ranks.
   template <class Archive>
   void serialize(Archive& archive) {
     archive(name, unit, description, turn, sampling);

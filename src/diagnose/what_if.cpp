@@ -84,7 +84,8 @@ void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& requested) {
 
 /// Sorts candidates and columns into the requested order; returns the requested effects that could be tested.
 /// @param further flights with the same columns
-std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights, TeamColumns& further,
+std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, PartitionedColumns& flights,
+                                          PartitionedColumns& further,
                                           const std::vector<WhatIfCandidate>& requested) {
   std::vector<WhatIfCandidate> found;
   std::vector<Candidate> candidates;
@@ -98,16 +99,16 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flight
       columns.push_back(as_index(set.first_column(position) + k));
   }
   set.candidates = std::move(candidates);
-  for (TeamColumns* const each : {&flights, &further}) {
+  for (PartitionedColumns* const each : {&flights, &further}) {
     for (FlightColumns& flight : each->flights) flight.keep_candidates(columns);
   }
   return found;
 }
 
 /// Columns of unused samples: all of files after the fitted ones, and later parts of fitted flights.
-TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const TeamColumns& columns,
-                             const ModelDefinition& model, const CandidateSet& set,
-                             const WhatIfOptions& options) {
+PartitionedColumns held_out_columns(const FlightSet& files, std::size_t fitted,
+                                    const PartitionedColumns& columns, const ModelDefinition& model,
+                                    const CandidateSet& set, const WhatIfOptions& options) {
   const MaskOptions& mask = options.diagnose.mask;
   const double share = options.diagnose.training_share;
   std::vector<std::size_t> file_of_each;
@@ -147,8 +148,8 @@ std::vector<std::vector<double>> by_records(const FlightColumns& flight) {
   return columns;
 }
 
-/// Flights of a team with columns in the panel, complete on every member.
-std::vector<FlightColumns> shown(const TeamColumns& columns,
+/// Flights of all ranks with columns in the panel, complete on every rank.
+std::vector<FlightColumns> shown(const PartitionedColumns& columns,
                                  const std::function<bool(std::size_t)>& is_shown) {
   std::vector<std::size_t> entries;
   for (std::size_t f = 0; f < columns.flights.size(); ++f) {
@@ -307,11 +308,11 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
       find_candidates(model, formulas_with(options.diagnose.formulas, requested), files, references,
                       dates_for(requested, files), options.diagnose.trust_reference);
   keep(set, requested);
-  TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
+  PartitionedColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
   if (columns.flights.empty()) throw Error(Error::Code::samples, "no sample remains to test effects");
   drop_untestable(set, columns);
-  TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
+  PartitionedColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
   hold_imitated_coefficients(set, columns, &others);
   const std::vector<WhatIfCandidate> found = put_in_order(set, columns, others, requested);
 

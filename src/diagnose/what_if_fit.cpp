@@ -132,8 +132,8 @@ std::vector<WhatIfSums> as_sums(const PartialSums& sums) {
 
 }  // namespace
 
-WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, TeamColumns flights,
-                     TeamColumns others, const std::vector<std::size_t>& found, bool is_robust,
+WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, PartitionedColumns flights,
+                     PartitionedColumns others, const std::vector<std::size_t>& found, bool is_robust,
                      WhatIfPanel& panel)
     : flights_(std::move(flights)), others_(std::move(others)), groups_(groups_of(set, set.candidates)) {
   base_ = flights_.flights.front().base.cols();
@@ -145,7 +145,7 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Team
     given_[c] = coefficient.given - coefficient.start;
     if (c < base_ && !coefficient.fixed) own_.push_back(c);
   }
-  for (TeamColumns* all : {&flights_, &others_}) {
+  for (PartitionedColumns* all : {&flights_, &others_}) {
     for (FlightColumns& flight : all->flights) {
       for (std::size_t i = 0; i < flight.given.size(); ++i)
         flight.given[i] += flight.base.row(as_index(i)).cast<double>().dot(given_.head(base_));

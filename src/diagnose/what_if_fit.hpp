@@ -16,8 +16,8 @@ namespace pcor::internal {
 using ResidualAt = std::function<std::vector<double>(const Eigen::VectorXd& values)>;
 
 /// Fit of a what-if: columns and residual of some flights in units of the noise, weighted as in a refit with
-/// the effects that were found, by default all of them. A member of a team has the columns of its flights;
-/// all members have the sums.
+/// the effects that were found, by default all of them. A rank has the columns of its flights; all ranks
+/// have the sums.
 class WhatIfFit {
  public:
   /// Completes a panel: its sums, with the weights of a refit with some of the effects that were found, and
@@ -27,11 +27,12 @@ class WhatIfFit {
   /// @param found candidates with which, and with subsets of which, the noise is estimated
   /// @param panel with its coefficients: the residual is linearised at their start values; fixed coefficients
   /// have the given value
-  WhatIfFit(const ModelDefinition& model, const CandidateSet& set, TeamColumns flights, TeamColumns others,
-            const std::vector<std::size_t>& found, bool is_robust, WhatIfPanel& panel);
+  WhatIfFit(const ModelDefinition& model, const CandidateSet& set, PartitionedColumns flights,
+            PartitionedColumns others, const std::vector<std::size_t>& found, bool is_robust,
+            WhatIfPanel& panel);
 
-  const TeamColumns& flights() const { return flights_; }
-  const TeamColumns& others() const { return others_; }
+  const PartitionedColumns& flights() const { return flights_; }
+  const PartitionedColumns& others() const { return others_; }
 
  private:
   std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
@@ -43,8 +44,8 @@ class WhatIfFit {
   WhitenedSystem least_squares(const std::vector<Eigen::Index>& free, bool is_robust, Eigen::VectorXd& values,
                                std::vector<Eigen::VectorXd>& weights) const;
 
-  TeamColumns flights_;
-  TeamColumns others_;
+  PartitionedColumns flights_;
+  PartitionedColumns others_;
   std::vector<ColumnGroup> groups_;
   std::vector<std::vector<Eigen::Index>> identifiable_{};  // columns of each group
   Eigen::Index base_ = 0;

@@ -167,7 +167,7 @@ Eigen::MatrixXd shared_covariance(const std::vector<StaticReference>& references
 
 /// Inverse of equations with unknowns of different orders of magnitude, over the directions that they
 /// determine. @param scale one over the root of the diagonal of the equations with all blocks
-Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& scale) {
+Eigen::MatrixXd scaled_pseudo_inverse(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& scale) {
   return scale.asDiagonal() * pseudo_inverse(scale.asDiagonal() * matrix * scale.asDiagonal()) *
          scale.asDiagonal();
 }
@@ -186,7 +186,7 @@ bool is_determined(Eigen::Index coefficient, const Eigen::MatrixXd& rest,
 
 /// Jackknife errors of coefficients: one Newton step from the fit of all blocks to the fit without one block.
 /// Infinite if one block alone determines a coefficient. @param varying coefficients that are not at a bound
-/// @param equations of these coefficients @param scale of `scaled_inverse`
+/// @param equations of these coefficients @param scale of `scaled_pseudo_inverse`
 Eigen::VectorXd jackknife_errors(const std::vector<Eigen::MatrixXd>& blocks,
                                  const std::vector<Eigen::Index>& varying, const Eigen::MatrixXd& equations,
                                  const Eigen::MatrixXd& inverse, const Eigen::VectorXd& scale) {
@@ -194,7 +194,7 @@ Eigen::VectorXd jackknife_errors(const std::vector<Eigen::MatrixXd>& blocks,
   Eigen::VectorXd undetermined = Eigen::VectorXd::Zero(changes.rows());  // infinite or zero
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Eigen::MatrixXd rest = equations - blocks[b](varying, varying);
-    const Eigen::MatrixXd inverse_of_rest = scaled_inverse(rest, scale);
+    const Eigen::MatrixXd inverse_of_rest = scaled_pseudo_inverse(rest, scale);
     changes.col(as_index(b)) = inverse_of_rest * blocks[b].rightCols<1>()(varying);
     for (Eigen::Index k = 0; k < changes.rows(); ++k) {
       if (!is_determined(k, rest, inverse_of_rest, inverse)) undetermined[k] = infinity;
@@ -263,7 +263,7 @@ class ScoreSums {
     const Eigen::MatrixXd equations_of_all = derivatives(varying, varying);
     const Eigen::VectorXd scale =
         equations_of_all.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd inverse = scaled_inverse(equations_of_all, scale);
+    const Eigen::MatrixXd inverse = scaled_pseudo_inverse(equations_of_all, scale);
     const Eigen::MatrixXd by_fixed = -inverse * derivatives(varying, Eigen::all).rightCols(size_ - fitted_);
     Eigen::MatrixXd covariance = inverse * score(varying, varying) * inverse.transpose();
     const Eigen::MatrixXd from_fixed = by_fixed * fixed * by_fixed.transpose();

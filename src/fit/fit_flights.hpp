@@ -112,9 +112,9 @@ struct Reduction {
   }
 };
 
-/// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes
+/// The flights of a fit. Passes over them run several flights at a time, and each rank passes
 /// over its own; results are added in the order of the flights, so they do not depend on the number of
-/// threads or members. Residuals and derivatives of the local flights in bins stay in memory; the set keeps
+/// threads or ranks. Residuals and derivatives of the local flights in bins stay in memory; the set keeps
 /// the samples within its memory.
 ///
 /// Derivatives of residuals other than static pressure, which hardly change and are slow to compute, and
@@ -157,10 +157,10 @@ class FitFlights {
   std::size_t bins() const { return bins_; }
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
-  /// Results for every flight from its samples, in the order of flights, on every member of the team: one
+  /// Results for every flight from its samples, in the order of flights, on every rank: one
   /// exchange.
   /// @param make gets the number of a flight and the flight; it is called by several threads
-  /// @param parameters must agree between the members
+  /// @param parameters must agree between the ranks
   template <class Make>
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
     using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<const FitFlight&>()))>;

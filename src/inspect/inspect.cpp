@@ -392,7 +392,7 @@ class Look {
     if (!result_.model) return;
     const ModelDefinition& model = *result_.model;
     const auto has = [&](Quantity role) { return model.variables.count(role) != 0; };
-    constexpr const char* avionics = "PS_A";
+    const std::string avionics(avionics_static_pressure);
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) && has_temperature;
     const std::string corrected = processed_static_pressure(flight_, family_);

@@ -8,7 +8,7 @@
 namespace pcor {
 namespace {
 
-/// Bytes that all members together exchange in one call: MPI counts them by a 32-bit number.
+/// Bytes that all ranks together exchange in one call: MPI counts them by a 32-bit number.
 constexpr std::size_t max_at_once = std::size_t{1} << 30;
 
 }  // namespace

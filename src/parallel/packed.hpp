@@ -34,7 +34,7 @@ void load(Archive& archive, Eigen::Matrix<Number, rows, columns>& matrix) {
 
 namespace pcor::internal {
 
-/// A value as bytes, for a member of a team that runs the same program on a processor of the same kind.
+/// A value as bytes, for another rank, which runs the same program on a processor of the same kind.
 template <class Value>
 std::string packed(const Value& value) {
   std::ostringstream stream;

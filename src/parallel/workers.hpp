@@ -8,14 +8,13 @@
 
 namespace pcor::internal {
 
-/// Who shares a work: the members of a team, and in each some threads.
+/// Ranks of a communicator that share work, and threads of each.
 struct Workers {
   Communicator& comm;
   std::size_t threads;  ///< threads of this rank, at least one
 
-  /// @param requested threads; 0: as many as processors, and one in a team of several, which has a processor
-  /// for
-  ///        each member
+  /// @param requested threads; 0: as many as processors, and one if there are several ranks, which have a
+  /// processor each
   Workers(Communicator& of, std::size_t requested)
       : comm(of),
         threads(requested > 0   ? requested

@@ -266,7 +266,7 @@ struct ItemJson {
 /// Escapes characters that a terminal or a page would interpret.
 void show_texts(json& data) {
   if (data.is_string()) {
-    data = pcor::shown_text(data.get_ref<const std::string&>());
+    data = pcor::sanitize_text(data.get_ref<const std::string&>());
   } else if (data.is_structured()) {
     for (json& each : data) show_texts(each);
   }

@@ -34,7 +34,7 @@ std::string escaped(std::string_view text) {
   constexpr std::string_view special = "&<>\"'";
   constexpr std::array entities{"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
   std::string safe;
-  for (const char letter : shown_text(text)) {
+  for (const char letter : sanitize_text(text)) {
     const std::size_t found = special.find(letter);
     if (found == std::string_view::npos)
       safe += letter;

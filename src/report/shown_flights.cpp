@@ -85,11 +85,12 @@ void show_flights_over_time(Report& report, std::size_t maximum) {
   });
   if (shown.size() == all.size()) return;
   std::sort(shown.begin(), shown.end());
-  report.summary.push_back(shown_text(shown.size(), all.size(), "flights spread over the campaign"));
+  report.summary.push_back(
+      format_shown_flights(shown.size(), all.size(), "flights spread over the campaign"));
   show_only(report, shown);
 }
 
-std::string shown_text(std::size_t shown, std::size_t flights, const std::string& which) {
+std::string format_shown_flights(std::size_t shown, std::size_t flights, const std::string& which) {
   if (shown >= flights) return "";
   return fmt::format(
       "The pictures of samples, and selections in them, show {} of the {} flights: {}. All other results "

@@ -33,7 +33,7 @@ void show_flights_over_time(Report& report, std::size_t maximum = max_flights_sh
 
 /// Note on pictures that do not show all flights, a sentence; empty if they show all.
 /// @param which description of the shown flights
-std::string shown_text(
+std::string format_shown_flights(
     std::size_t shown, std::size_t flights,
     const std::string& which = "the flights with the largest residuals, and others spread over the campaign");
 

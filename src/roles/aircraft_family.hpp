@@ -11,6 +11,9 @@
 
 namespace pcor::internal {
 
+/// Static pressure of the avionics in NCAR files: corrected by its manufacturer, filtered and delayed.
+inline constexpr std::string_view avionics_static_pressure = "PS_A";
+
 /// The variables of a pair of pressures, hPa.
 struct PressurePair {
   std::string static_pressure;

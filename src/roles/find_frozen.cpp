@@ -30,13 +30,13 @@ constexpr std::size_t noise_window = 300;    // samples on either side
 constexpr std::size_t max_listed = 3;        // segments in a text
 
 /// Consecutive equal values, with missing ones between them.
-struct Run {
+struct ConstantRun {
   Segment segment;
   std::size_t length = 0;  ///< number of values that are not missing
 };
 
-std::vector<Run> runs_of(const std::vector<double>& values, const std::vector<bool>& used) {
-  std::vector<Run> runs;
+std::vector<ConstantRun> runs_of(const std::vector<double>& values, const std::vector<bool>& used) {
+  std::vector<ConstantRun> runs;
   double last = nan;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!used[i]) last = nan;
@@ -102,7 +102,7 @@ Segment with_unused(Segment run, const std::vector<double>& values) {
 }
 
 /// Mean length of the neighbouring runs, without the longest ones.
-double mean_length_near(const std::vector<Run>& runs, std::size_t run) {
+double mean_length_near(const std::vector<ConstantRun>& runs, std::size_t run) {
   std::vector<std::size_t> lengths;
   const std::size_t end = std::min(run + neighbours + 1, runs.size());
   for (std::size_t i = run - std::min(run, neighbours); i < end; ++i) {
@@ -132,13 +132,13 @@ bool is_watched(Quantity quantity) {
 
 std::vector<Segment> find_frozen(const std::vector<double>& values, const std::vector<bool>& used,
                                  bool always_varies) {
-  const std::vector<Run> runs = runs_of(values, used);
+  const std::vector<ConstantRun> runs = runs_of(values, used);
   std::vector<Segment> frozen;
-  const auto same = [&](const Run& run) {
+  const auto same = [&](const ConstantRun& run) {
     return values[run.segment.first] == values[runs.front().segment.first];
   };
   if (always_varies && std::all_of(runs.begin(), runs.end(), same)) {
-    for (const Run& run : runs) frozen.push_back(with_unused(run.segment, values));
+    for (const ConstantRun& run : runs) frozen.push_back(with_unused(run.segment, values));
     return each_once(std::move(frozen));
   }
   if (runs.size() < 2) return {};
@@ -221,7 +221,8 @@ std::vector<Segment> find_frozen(const Flight& flight, const std::string& variab
     }
   }
   frozen.clear();
-  for (const Run& run : runs_of(std::vector<double>(means.size()), marked)) frozen.push_back(run.segment);
+  for (const ConstantRun& run : runs_of(std::vector<double>(means.size()), marked))
+    frozen.push_back(run.segment);
   return frozen;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <pcor/base/error.hpp>
+#include <pcor/base/format_estimate.hpp>
 #include <pcor/effects/humidity_error.hpp>
 #include <pcor/effects/psfd_bias.hpp>
 #include <pcor/effects/static_alpha.hpp>
@@ -416,7 +417,7 @@ class TemperatureCalibration {
       return fmt::format(
           "the correction is not significant: {} K at {:.0f} C, the best determined temperature; threshold "
           "{:g} standard errors (p = 0.01)",
-          with_error(at.correction, at.standard_error), at.temperature, significant);
+          format_estimate(at.correction, at.standard_error), at.temperature, significant);
     }
     const double before = rms_without_other_errors({});
     const double after = rms_without_other_errors(result_.likelihood.coefficients);
@@ -431,7 +432,7 @@ class TemperatureCalibration {
       return fmt::format(
           "least squares on height contradicts the likelihood: it would add {} K to the correction, more "
           "than {:g} standard errors",
-          with_error(result_.least_squares_add, result_.least_squares_add_error), significant_ratio);
+          format_estimate(result_.least_squares_add, result_.least_squares_add_error), significant_ratio);
     }
     for (const std::vector<PartCorrection>* parts : result_.parts()) {
       for (const PartCorrection& part : *parts) {
@@ -439,7 +440,7 @@ class TemperatureCalibration {
         return fmt::format(
             "the correction degrades {} by more than three standard errors; separate fit {} K, common "
             "correction {:+.2f} K",
-            part.part, with_error(part.correction, part.standard_error), part.common);
+            part.part, format_estimate(part.correction, part.standard_error), part.common);
       }
     }
     return "";

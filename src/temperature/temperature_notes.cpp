@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <map>
 
+#include <pcor/base/format_estimate.hpp>
 #include <pcor/model_io/model_definition.hpp>
 #include "temperature/parts.hpp"
 
@@ -44,7 +45,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
         "compare the result with {}: a correction of {} K is {:.0f} times the usual error of a thermometer, "
         "{} K; {}a lag or an error of the heights is more likely",
         recovers ? "the recorded ambient temperature" : "another thermometer",
-        with_error(largest.correction, largest.standard_error),
+        format_estimate(largest.correction, largest.standard_error),
         std::abs(largest.correction) / usual_thermometer_error, usual_thermometer_error,
         recovers ? "a wrong recovery factor, " : ""));
   }
@@ -52,7 +53,8 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     if (!(spread > 0.0)) return;
     std::vector<std::string> texts;
     for (const PartCorrection& part : parts)
-      texts.push_back(fmt::format("{} {} K", part.part, with_error(part.correction, part.standard_error)));
+      texts.push_back(
+          fmt::format("{} {} K", part.part, format_estimate(part.correction, part.standard_error)));
     const Disagreement apart = disagreement_of(parts);
     warnings.push_back(fmt::format(
         "{} differ by {:.2g} K, p = {:.1g} (threshold 0.01); this standard deviation is included in "
@@ -67,7 +69,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors) {
     if (!is_seen(error)) continue;
     const bool is_in_model = has_effect(result.model, error.effect);
-    const std::string by = with_error(error.change, error.standard_error);
+    const std::string by = format_estimate(error.change, error.standard_error);
     warnings.push_back(fmt::format(
         "{}; this error was removed before fitting the thermometer, {}; if a laser or a second system "
         "confirms the error, {}",
@@ -82,7 +84,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     warnings.push_back(
         fmt::format("compare the humidity with another hygrometer: by GPS heights the vapour pressure is too "
                     "small by {}",
-                    with_error(result.humidity_change, result.humidity_error)));
+                    format_estimate(result.humidity_change, result.humidity_error)));
   }
   return warnings;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include <pcor/base/format_estimate.hpp>
 #include <pcor/base/utc.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/temperature/temperature.hpp>
@@ -33,7 +34,7 @@ ReportTable coefficient_table(const TemperatureResult& result) {
       {}};
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
     const auto of = [k](const TemperatureFit& fit) {
-      return with_error(fit.coefficients[k], fit.standard_errors[k]);
+      return format_estimate(fit.coefficients[k], fit.standard_errors[k]);
     };
     table.rows.push_back({fmt::format("a{}", k), of(result.likelihood), of(result.least_squares),
                           fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_unit(k)});
@@ -101,7 +102,7 @@ ReportTable law_table(const TemperatureResult& result) {
       {"effect", "coefficient", "lacks", "unit", "range over the flights, hPa"},
       {}};
   for (const LawError& error : result.law_errors)
-    table.rows.push_back({error.effect, error.parameter, with_error(error.change, error.standard_error),
+    table.rows.push_back({error.effect, error.parameter, format_estimate(error.change, error.standard_error),
                           std::string(effect_named(error.effect)->parameters[0].unit),
                           fmt::format("{:.2f}", error.range)});
   return table;
@@ -131,13 +132,6 @@ std::string coefficient_unit(std::size_t power) {
   return units.at(power);
 }
 
-std::string with_error(double value, double error, std::string_view plus_minus) {
-  if (!(error > 0.0) || !std::isfinite(error))
-    return fmt::format("{:+.3g} {} {:g}", value, plus_minus, error);
-  const int decimals = decimals_of_error(error);
-  return fmt::format("{:+.{}f} {} {:.{}f}", value, decimals, plus_minus, error, decimals);
-}
-
 std::string pressure_error_text(const TemperatureResult& result) {
   if (result.pressure_error > 0.0) {
     return fmt::format(
@@ -161,8 +155,8 @@ Report temperature_report(const TemperatureResult& result) {
   Report report;
   const TemperatureCorrection& middle = result.corrections[result.corrections.size() / 2];
   report.title = fmt::format("Temperature correction {} K at {:.0f} °C{}",
-                             with_error(middle.correction, middle.standard_error, "±"), middle.temperature,
-                             result.worse.empty() ? "" : ", not recommended");
+                             format_estimate(middle.correction, middle.standard_error, PlusSign::always, "±"),
+                             middle.temperature, result.worse.empty() ? "" : ", not recommended");
   report.subtitle = "Calibration by the GPS height for " + result.model.model.name;
   if (!result.worse.empty()) report.summary.push_back("Not recommended: " + result.worse + ".");
   for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 using namespace pcor::internal;
 using pcor::FlightPartition;

@@ -18,7 +18,7 @@
 #include "support/error_of.hpp"
 #include "support/short_flight.hpp"
 #include "support/synthetic_samples.hpp"
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 using pcor::ComparedModel;
 using pcor::CompareOptions;

@@ -49,7 +49,7 @@ std::map<std::string, double> gains(const std::filesystem::path& path, bool with
   CandidateSet set =
       find_candidates(laser_model(), {}, flights, in_order_of_diagnosis(references_of(with_height)));
   pcor::Notes notes;
-  TeamColumns columns = columns_of_flights(flights, 1, laser_model(), set, {}, notes);
+  PartitionedColumns columns = columns_of_flights(flights, 1, laser_model(), set, {}, notes);
   leave_out_empty(columns);
   drop_untestable(set, columns);
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates));

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "support/bins.hpp"
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 using namespace pcor::internal;
 using pcor::FlightPartition;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <pcor/base/error.hpp>
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 namespace pcor {
 namespace {
@@ -18,7 +18,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::StartsWith;
 
-/// Result of each member of a team, as text.
+/// Result of each rank, as text.
 template <class Work>
 std::vector<std::string> each_of(std::size_t size, const Work& work) {
   std::vector<std::string> results(size);
@@ -50,7 +50,7 @@ TEST(Communicator, GathersValuesInRankOrder) {
   EXPECT_EQ(gather(serial_communicator()), "<><" + zero + "0>");
 }
 
-TEST(Communicator, AllMembersFailWithTheEarliestError) {
+TEST(Communicator, AllRanksFailWithTheEarliestError) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) comm.fail(Error(Error::Code::unit, "flight 5"), 6);
     if (comm.rank() == 2) comm.fail(Error(Error::Code::file, "flight 3"), 4);
@@ -89,7 +89,7 @@ TEST(Communicator, LastMessageExplainsMemberFailure) {
   EXPECT_THAT(each_of(3, work), Each("left: no memory"));
 }
 
-TEST(Communicator, FinishedMembersExitSilently) {
+TEST(Communicator, FinishedRanksExitSilently) {
   const auto work = [](Communicator& comm) {
     comm.gather("");
     return comm.leave() ? "error" : "done";
@@ -121,7 +121,7 @@ TEST(Communicator, OneMemberSendsNoMessage) {
                   .empty());
 }
 
-/// Members that start, end and fail at random never wait for each other forever: otherwise
+/// Ranks that start, end and fail at random never wait for each other forever: otherwise
 /// `run_with_communicator` fails.
 TEST(Communicator, RandomFailuresCauseNoDeadlock) {
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -141,7 +141,7 @@ TEST(Communicator, RandomFailuresCauseNoDeadlock) {
       const auto error = comm.leave();
       return std::string(error ? error->what() : "done");
     });
-    // Either all members succeed or all fail.
+    // Either all ranks succeed or all fail.
     EXPECT_EQ(std::count(ends.begin(), ends.end(), "done") % 4, 0) << joined(ends);
   }
 }

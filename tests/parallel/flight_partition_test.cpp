@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "support/error_of.hpp"
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -21,12 +21,12 @@ namespace {
 using test::run_with_communicator;
 using ::testing::Each;
 
-/// Total weight of the flights of each member.
-std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uint64_t>& sizes) {
-  std::vector<std::uint64_t> load(members, 0);
+/// Total weight of the flights of each rank.
+std::vector<std::uint64_t> loads(std::size_t ranks, const std::vector<std::uint64_t>& sizes) {
+  std::vector<std::uint64_t> load(ranks, 0);
   std::vector<int> owners(sizes.size(), 0);
   std::mutex counting;
-  run_with_communicator(members, [&](Communicator& comm) {
+  run_with_communicator(ranks, [&](Communicator& comm) {
     const FlightPartition share(comm, sizes);
     EXPECT_EQ(share.flights(), sizes.size());
     std::size_t own = 0;
@@ -48,17 +48,17 @@ TEST(FlightPartition, FlightsAreAssignedOnceWithBalancedLoad) {
   std::vector<std::uint64_t> sizes;
   for (int flight = 0; flight < 60; ++flight) sizes.push_back(1'000'000 + chance() % 9'000'000);
   const std::uint64_t all = std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0});
-  for (const std::size_t members : {1, 2, 3, 7}) {
-    const std::vector<std::uint64_t> load = loads(members, sizes);
+  for (const std::size_t ranks : {1, 2, 3, 7}) {
+    const std::vector<std::uint64_t> load = loads(ranks, sizes);
     // Assignment by decreasing length is at most a third above the optimum (Graham 1969), far less for this
     // number of flights.
     EXPECT_LT(*std::max_element(load.begin(), load.end()),
-              1.02 * static_cast<double>(all) / static_cast<double>(members));
+              1.02 * static_cast<double>(all) / static_cast<double>(ranks));
   }
-  EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
+  EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more ranks than flights
 }
 
-TEST(FlightPartition, DifferentFlightsOfMembersAreAnError) {
+TEST(FlightPartition, DifferentFlightsOfRanksAreAnError) {
   std::vector<std::optional<Error>> errors(2);
   test::run_with_communicator(2, [&](Communicator& comm) {
     errors[comm.rank()] = test::error_of([&] {
@@ -99,8 +99,8 @@ TEST(FlightPartition, GatheredPartsKeepBitsAndFlightOrder) {
   constexpr std::size_t flights = 7;
   std::vector<Part> alone_parts(flights);
   for (std::size_t flight = 0; flight < flights; ++flight) alone_parts[flight] = part_of(flight);
-  for (const std::size_t members : {1, 2, 3, 11}) {
-    run_with_communicator(members, [&](Communicator& comm) {
+  for (const std::size_t ranks : {1, 2, 3, 11}) {
+    run_with_communicator(ranks, [&](Communicator& comm) {
       const FlightPartition share(comm, std::vector<std::uint64_t>(flights, 5));
       const auto parts = share.of_each_flight<Part>([&](std::size_t flight) { return alone_parts[flight]; });
       EXPECT_EQ(packed(parts), packed(alone_parts));
@@ -150,7 +150,7 @@ TEST(SumOfEachFlight, AddsInTheOrderOfFlights) {
   EXPECT_EQ(FlightPartition(0).sum_of_each_flight<double>(part), 0.0);
 }
 
-TEST(SumOfEachFlight, FailsOnAllMembers) {
+TEST(SumOfEachFlight, FailsOnAllRanks) {
   const auto part = [](std::size_t flight) {
     if (flight == 41 || flight == 43) throw Error(Error::Code::file, "flight " + std::to_string(flight));
     return 1.0;

@@ -85,8 +85,8 @@ TEST(ShownFlights, ShownFlightsKeepTheirRecordsAndIntervals) {
 }
 
 TEST(ShownFlights, OmittedFlightsAreReported) {
-  EXPECT_THAT(shown_text(16, 16), IsEmpty());
-  EXPECT_THAT(shown_text(16, 200), HasSubstr("16 of the 200 flights"));
+  EXPECT_THAT(format_shown_flights(16, 16), IsEmpty());
+  EXPECT_THAT(format_shown_flights(16, 200), HasSubstr("16 of the 200 flights"));
 }
 
 }  // namespace

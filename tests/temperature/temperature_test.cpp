@@ -605,13 +605,6 @@ TEST_F(Temperature, AlternatingFitReportsPressureChange) {
 
 // The report
 
-TEST(TemperatureText, ErrorsHaveTwoDigits) {
-  EXPECT_EQ(with_error(0.01, 0.0046), "+0.0100 +- 0.0046");
-  EXPECT_EQ(with_error(-0.53712, 0.0996), "-0.54 +- 0.10");
-  EXPECT_EQ(with_error(12.3, 34.0), "+12 +- 34");
-  EXPECT_EQ(with_error(-0.5, 0.012, "±"), "-0.500 ± 0.012");
-}
-
 TEST(TemperatureText, ImplausibleCorrectionExceedsItsStandardErrors) {
   TemperatureResult result;
   result.corrections = {{-50.0, -1.0, 0.1}, {20.0, -1.8, 0.4}};

@@ -10,8 +10,8 @@ namespace pcor::tool {
 /// number of an open file descriptor.
 bool wants_events();
 
-/// Writes there one line of JSON on the progress of the work: `{"task", "done", "total"}`. The first member
-/// of a team writes, for all.
+/// Writes there one line of JSON on the progress of the work: `{"task", "done", "total"}`. The first rank
+/// writes, for all.
 void send_progress(const std::string& task, std::size_t done, std::size_t total);
 
 /// Writes there one line of JSON on an error: `{"error", "code"}`.

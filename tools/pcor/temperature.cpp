@@ -8,6 +8,7 @@
 #include <string>
 
 #include <pcor/base/error.hpp>
+#include <pcor/base/format_estimate.hpp>
 #include "communicator.hpp"
 #include "comparison.hpp"
 #include "model_name.hpp"
@@ -57,7 +58,7 @@ void print_parts(const TemperatureResult& result) {
   for (const std::vector<PartCorrection>* parts : result.parts()) {
     for (const PartCorrection& part : *parts)
       say("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
-          with_error(part.correction, part.standard_error), part.common);
+          format_estimate(part.correction, part.standard_error), part.common);
   }
 }
 
@@ -65,10 +66,10 @@ void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
     say("According to the heights, delta-p lacks {} in {} of {}, a range of {:.2f} hPa over the flights; the "
         "error was subtracted.\n",
-        with_error(error.change, error.standard_error), error.parameter, error.effect, error.range);
+        format_estimate(error.change, error.standard_error), error.parameter, error.effect, error.range);
   if (result.humidity_change != 0.0)
     say("The heights change the vapour pressure by {} of its value.\n",
-        with_error(result.humidity_change, result.humidity_error));
+        format_estimate(result.humidity_change, result.humidity_error));
 }
 
 void print_coefficients(const TemperatureResult& result) {
@@ -88,7 +89,7 @@ void print_coefficients(const TemperatureResult& result) {
 void print_corrections(const TemperatureResult& result) {
   say("{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
-    say("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
+    say("{:>10.1f} C {:>20} K\n", at.temperature, format_estimate(at.correction, at.standard_error));
 }
 
 void print_in_full(const TemperatureResult& result) {
@@ -99,7 +100,7 @@ void print_in_full(const TemperatureResult& result) {
       pressure_error_text(result));
   print_law_errors(result);
   say("Least squares gives {} K, after subtraction of errors of the model.\n",
-      with_error(result.least_squares_add, result.least_squares_add_error));
+      format_estimate(result.least_squares_add, result.least_squares_add_error));
   say("\n");
   print_corrections(result);
   print_parts(result);

@@ -157,7 +157,7 @@ void tell(const std::string& message) {
 void say_text(std::string_view said) {
   static const std::size_t width = terminal_width();
   static const bool colour = wants_colour();
-  const std::string shown = shown_text(said);
+  const std::string shown = sanitize_text(said);
   std::string_view text = shown;
   if (width == 0) {
     fmt::print("{}", text);

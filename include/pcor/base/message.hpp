@@ -13,6 +13,6 @@ std::string sanitize_line(std::string_view message);
 void put_sanitized(std::string_view message, void (*put)(std::string_view));
 
 /// Text for display: as `sanitize_line`, but lines and length are kept.
-std::string shown_text(std::string_view text);
+std::string sanitize_text(std::string_view text);
 
 }  // namespace pcor

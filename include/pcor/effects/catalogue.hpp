@@ -117,7 +117,7 @@ inline constexpr std::size_t catalogue_size = std::tuple_size_v<Catalogue>;
 namespace detail {
 
 template <class... Effect>
-constexpr std::array<EffectInfo, sizeof...(Effect)> facts_of_effects(const std::tuple<Effect...>*) {
+constexpr std::array<EffectInfo, sizeof...(Effect)> info_of_effects(const std::tuple<Effect...>*) {
   return {Effect::info()...};
 }
 
@@ -139,7 +139,7 @@ constexpr std::array<EffectFunction<S, P>, sizeof...(Effect)> functions_of_effec
 
 /// Metadata of every effect, in the order of the catalogue.
 inline constexpr std::array<EffectInfo, catalogue_size> effect_info =
-    detail::facts_of_effects(static_cast<const Catalogue*>(nullptr));
+    detail::info_of_effects(static_cast<const Catalogue*>(nullptr));
 
 /// Functions of all effects, for a state of scalar `S` and parameters of scalar `P`.
 template <class S, class P>

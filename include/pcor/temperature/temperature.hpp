@@ -364,9 +364,6 @@ std::string degree_name(int degree);
 /// The unit of coefficient a0, a1 or a2: "K", "1" or "1/K".
 std::string coefficient_unit(std::size_t power);
 
-/// "-0.537 +- 0.012": the error with two significant digits, the value with as many decimals.
-std::string with_error(double value, double error, std::string_view plus_minus = "+-");
-
 /// One or two sentences on the effect of a constant static-pressure bias on the coefficients and their
 /// standard errors.
 std::string pressure_error_text(const TemperatureResult& result);

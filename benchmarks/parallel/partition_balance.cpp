@@ -13,7 +13,7 @@
 // by a sleep, 20 ms for the median length, so processors and file systems have no influence. Prints the time
 // of a pass and the efficiency: ideal time / measured time.
 //
-//   mpirun -n 32 team_balance [FLIGHTS_PER_PROCESS] [PASSES]      defaults 32 and 5
+//   mpirun -n 32 partition_balance [FLIGHTS_PER_PROCESS] [PASSES]      defaults 32 and 5
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
   {

@@ -35,9 +35,9 @@ inline std::vector<std::vector<std::size_t>> run_with_communicator(
   } table;
   table.laid.resize(size);
 
-  class Member final : public Communicator {
+  class ThreadRank final : public Communicator {
    public:
-    Member(Table& table, std::size_t rank, std::size_t size, bool one_at_a_time)
+    ThreadRank(Table& table, std::size_t rank, std::size_t size, bool one_at_a_time)
         : table_(table), rank_(rank), size_(size), one_at_a_time_(one_at_a_time) {}
     std::size_t rank() const override { return rank_; }
     std::size_t size() const override { return size_; }
@@ -75,16 +75,16 @@ inline std::vector<std::vector<std::size_t>> run_with_communicator(
     bool one_at_a_time_;
   };
 
-  std::vector<std::unique_ptr<Member>> members;
+  std::vector<std::unique_ptr<ThreadRank>> ranks;
   std::vector<std::exception_ptr> thrown(size);
   std::vector<std::thread> threads;
   for (std::size_t rank = 0; rank < size; ++rank)
-    members.push_back(std::make_unique<Member>(table, rank, size, one_at_a_time));
+    ranks.push_back(std::make_unique<ThreadRank>(table, rank, size, one_at_a_time));
   for (std::size_t rank = 0; rank < size; ++rank) {
     threads.emplace_back([&, rank] {
       if (one_at_a_time) table.working.lock();
       try {
-        work(*members[rank]);
+        work(*ranks[rank]);
       } catch (...) {
         thrown[rank] = std::current_exception();
       }
@@ -96,7 +96,7 @@ inline std::vector<std::vector<std::size_t>> run_with_communicator(
     if (each) std::rethrow_exception(each);
   }
   std::vector<std::vector<std::size_t>> sent;
-  for (const std::unique_ptr<Member>& member : members) sent.push_back(member->sent);
+  for (const std::unique_ptr<ThreadRank>& rank : ranks) sent.push_back(rank->sent);
   return sent;
 }
 

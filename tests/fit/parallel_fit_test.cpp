@@ -12,7 +12,7 @@
 
 #include "support/error_of.hpp"
 #include "support/synthetic_samples.hpp"
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 // A fit whose flights are shared is the fit of one process, and sends little.
 
@@ -66,19 +66,19 @@ RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, 
                made::pressure_reference(), options);
 }
 
-TEST(TeamFit, ResultIsIndependentOfMembersAndThreads) {
+TEST(ParallelFit, ResultIsIndependentOfRanksAndThreads) {
   const auto all = flights(5);
   const std::string alone_result = text_of(fit_of(all, serial_communicator()));
   EXPECT_EQ(text_of(fit_of(all, serial_communicator(), 2)), alone_result);
-  for (const std::size_t members : {2, 3, 7}) {
-    std::vector<std::string> results(members);
+  for (const std::size_t ranks : {2, 3, 7}) {
+    std::vector<std::string> results(ranks);
     test::run_with_communicator(
-        members, [&](Communicator& comm) { results[comm.rank()] = text_of(fit_of(all, comm)); });
-    EXPECT_THAT(results, Each(alone_result)) << members;
+        ranks, [&](Communicator& comm) { results[comm.rank()] = text_of(fit_of(all, comm)); });
+    EXPECT_THAT(results, Each(alone_result)) << ranks;
   }
 }
 
-TEST(TeamFit, ManyFlightsWithUninformativeOnesAgree) {
+TEST(ParallelFit, ManyFlightsWithUninformativeOnesAgree) {
   std::vector<std::shared_ptr<const FlightSamples>> all = flights(19);
   for (const std::size_t blind : {0U, 2U, 4U, 18U}) {
     auto without = std::make_shared<FlightSamples>(*all[blind]);
@@ -101,24 +101,24 @@ TEST(TeamFit, ManyFlightsWithUninformativeOnesAgree) {
   }
 }
 
-/// The bytes of each exchange of all members together.
+/// The bytes of each exchange of all ranks together.
 std::vector<std::size_t> bytes_of_exchanges(std::size_t count) {
   const auto all = flights(count);
   const auto sent = test::run_with_communicator(3, [&](Communicator& comm) { fit_of(all, comm); });
   std::vector<std::size_t> bytes(sent.front().size(), 0);
-  for (const std::vector<std::size_t>& member : sent) {
-    EXPECT_EQ(member.size(), sent.front().size());
-    if (member.size() != bytes.size()) break;
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] += member[i];
+  for (const std::vector<std::size_t>& rank : sent) {
+    EXPECT_EQ(rank.size(), sent.front().size());
+    if (rank.size() != bytes.size()) break;
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] += rank[i];
   }
   return bytes;
 }
 
-TEST(TeamFit, EachPassExchangesOneMatrixPerFlight) {
+TEST(ParallelFit, EachPassExchangesOneMatrixPerFlight) {
   constexpr std::size_t unknowns = 3;
   for (const std::size_t count : {17U, 34U}) {
     const std::size_t least = count * 8 * (unknowns + 1) * (unknowns + 1);
-    const std::size_t most = least + (count + 3) * 64;  // other numbers of each flight and each member
+    const std::size_t most = least + (count + 3) * 64;  // other numbers of each flight and each rank
     const std::vector<std::size_t> bytes = bytes_of_exchanges(count);
     const auto passes = std::count_if(bytes.begin(), bytes.end(),
                                       [&](std::size_t each) { return each > least && each <= most; });
@@ -126,7 +126,7 @@ TEST(TeamFit, EachPassExchangesOneMatrixPerFlight) {
   }
 }
 
-TEST(TeamFit, FailsEquallyOnAllMembers) {
+TEST(ParallelFit, FailsEquallyOnAllRanks) {
   std::vector<std::optional<Error>> errors(2);
   test::run_with_communicator(2, [&](Communicator& comm) {
     const std::vector<std::filesystem::path> paths{"nowhere/a.nc", "nowhere/b.nc"};

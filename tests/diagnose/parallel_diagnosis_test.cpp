@@ -1,4 +1,4 @@
-// A diagnosis by a team is that of one process alone, bit by bit.
+// A diagnosis by several ranks is that of one process, bit by bit.
 #include <gmock/gmock.h>
 #include <pcor/base/error.hpp>
 #include <pcor/diagnose/diagnose.hpp>
@@ -20,7 +20,7 @@
 #include "support/error_of.hpp"
 #include "support/short_flight.hpp"
 #include "support/temporary_directory.hpp"
-#include "support/thread_team.hpp"
+#include "support/thread_communicator.hpp"
 
 namespace cereal {
 
@@ -103,20 +103,20 @@ void expect_same(const Diagnosis& one, const Diagnosis& other) {
   EXPECT_EQ(beside_json(one), beside_json(other));
 }
 
-/// Runs a team and returns its exchanges.
+/// Runs several ranks and returns their exchanges.
 void run_team(std::size_t size, const std::function<void(Communicator&)>& work) {
   testing::internal::CaptureStderr();  // HDF5 prints errors of failed netCDF queries in further threads
   const auto sent = run_with_communicator(size, work, true);
   testing::internal::GetCapturedStderr();
   std::size_t bytes = 0;
-  for (const auto& member : sent) bytes = std::accumulate(member.begin(), member.end(), bytes);
-  std::cout << size << " members: " << sent.front().size() << " exchanges, " << bytes << " bytes\n";
+  for (const auto& rank : sent) bytes = std::accumulate(rank.begin(), rank.end(), bytes);
+  std::cout << size << " ranks: " << sent.front().size() << " exchanges, " << bytes << " bytes\n";
 }
 
-/// The diagnosis of one process, which that of a team has to be.
+/// The diagnosis of one process, to which that of several ranks is equal.
 Diagnosis expect_that_of_one(const Paths& paths, const References& references, DiagnoseOptions options = {}) {
   const Diagnosis alone = diagnose(paths, laser_model(), references, options);
-  for (const std::size_t size : {3U, 6U}) {  // members with several flights, and one without a flight
+  for (const std::size_t size : {3U, 6U}) {  // ranks with several flights, and one without a flight
     SCOPED_TRACE(size);
     run_team(size, [&](Communicator& comm) {
       expect_same(diagnose({paths, {{}, &comm}}, laser_model(), references, options), alone);
@@ -127,7 +127,7 @@ Diagnosis expect_that_of_one(const Paths& paths, const References& references, D
 
 const std::string strong_beta_odd = "id = \"static-beta-odd\"\nb1 = -0.02\n";
 
-TEST(DiagnosisOfATeam, FindsSameEffectAndSeparationAdvice) {
+TEST(ParallelDiagnosis, FindsSameEffectAndSeparationAdvice) {
   DiagnoseOptions options;
   options.formulas = {tried_formula("k * sideslip")};
   const Diagnosis diagnosis = expect_that_of_one(flights(strong_beta_odd, 10), {lams_reference()}, options);
@@ -136,7 +136,7 @@ TEST(DiagnosisOfATeam, FindsSameEffectAndSeparationAdvice) {
   EXPECT_THAT(diagnosis.findings[0].advice.sentence, Not(IsEmpty()));
 }
 
-TEST(DiagnosisOfATeam, FindsTheSameEffectWithFlapsExtended) {
+TEST(ParallelDiagnosis, FindsTheSameEffectWithFlapsExtended) {
   const std::string flaps = "id = \"flaps-gear\"\ndefect = 3.0\n";
   DiagnoseOptions options;
   options.whole_file = false;
@@ -146,7 +146,7 @@ TEST(DiagnosisOfATeam, FindsTheSameEffectWithFlapsExtended) {
   EXPECT_GE(diagnosis.findings[0].largest_rms, diagnosis.findings[0].rms);
 }
 
-TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
+TEST(ParallelWhatIf, ResultEqualsThatOfOneProcess) {
   const Paths paths = flights(strong_beta_odd, 10);
   const Diagnosis diagnosis = diagnose(paths, laser_model(), {lams_reference()});
   const auto candidates = what_if_candidates(diagnosis, {});
@@ -182,7 +182,7 @@ TEST(WhatIfOfATeam, ResultEqualsThatOfOneProcess) {
   });
 }
 
-TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
+TEST(ParallelDiagnosis, FindsTheSameVariablesOfTheFiles) {
   DiagnoseOptions options;
   options.training_share = 0.9;
   const Diagnosis diagnosis = expect_that_of_one(
@@ -195,7 +195,7 @@ TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
   for (const pcor::HeldOutPart& part : diagnosis.held_out) EXPECT_EQ(part.parts, diagnosis.held_out.size());
 }
 
-TEST(DiagnosisOfATeam, HoldsTheRequestedRecords) {
+TEST(ParallelDiagnosis, HoldsTheRequestedRecords) {
   DiagnoseOptions options;
   options.whole_file = false;
   for (const std::vector<std::size_t>& requested : {std::vector<std::size_t>{}, {1, 4}}) {
@@ -216,7 +216,7 @@ TEST(DiagnosisOfATeam, HoldsTheRequestedRecords) {
   }
 }
 
-TEST(DiagnosisOfATeam, FailsOnAllMembersAsInOneProcess) {
+TEST(ParallelDiagnosis, FailsOnAllRanksAsInOneProcess) {
   Paths paths = flights("", 30);
   const test::TemporaryDirectory directory;
   paths[2] = directory / "broken.nc";
