@@ -9,6 +9,18 @@ Eigen::VectorXd inverse_above(double minimum, Eigen::VectorXd eigenvalues) {
   return eigenvalues;
 }
 
+/// Covariance as standard deviations and eigenvectors of the correlations, which do not depend on units.
+struct ScaledCovariance {
+  explicit ScaledCovariance(const Eigen::MatrixXd& covariance)
+      : scale(covariance.diagonal().cwiseMax(0.0).cwiseSqrt()),
+        inverse_scale((scale.array() > 0.0).select(scale.cwiseInverse(), 0.0)),
+        correlations(inverse_scale.asDiagonal() * covariance * inverse_scale.asDiagonal()) {}
+
+  Eigen::VectorXd scale;          ///< standard deviations
+  Eigen::VectorXd inverse_scale;  ///< zero for an unknown without a variance
+  SymmetricEigen correlations;
+};
+
 }  // namespace
 
 SymmetricEigen::SymmetricEigen(const Eigen::MatrixXd& matrix) {
@@ -22,31 +34,28 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix) {
 }
 
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const SymmetricEigen eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  return scale.asDiagonal() * eigen.eigenvectors() *
+  const ScaledCovariance scaled(covariance);
+  const SymmetricEigen& eigen = scaled.correlations;
+  return scaled.scale.asDiagonal() * eigen.eigenvectors() *
          eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 Eigen::MatrixXd larger_covariance(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
   // With R R' = one + other over the directions in which the sum is not zero, the parts R^-1 one R'^-1 and
   // R^-1 other R'^-1 add up to one, so they have the same eigenvectors.
-  const Eigen::MatrixXd sum = one + other;
-  const Eigen::VectorXd scale = sum.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
-  const SymmetricEigen correlations(inverse.asDiagonal() * sum * inverse.asDiagonal());
+  const ScaledCovariance sum(one + other);
+  const Eigen::VectorXd& correlations = sum.correlations.eigenvalues();
   std::vector<Eigen::Index> kept;
-  for (Eigen::Index k = 0; k < sum.rows(); ++k) {
-    if (correlations.eigenvalues()[k] > rank_limit) kept.push_back(k);
+  for (Eigen::Index k = 0; k < one.rows(); ++k) {
+    if (correlations[k] > rank_limit) kept.push_back(k);
   }
-  if (kept.empty()) return Eigen::MatrixXd::Zero(sum.rows(), sum.cols());
-  const Eigen::VectorXd root = correlations.eigenvalues()(kept).cwiseSqrt();
-  const Eigen::MatrixXd directions = correlations.eigenvectors()(Eigen::all, kept);
+  if (kept.empty()) return Eigen::MatrixXd::Zero(one.rows(), one.cols());
+  const Eigen::VectorXd root = correlations(kept).cwiseSqrt();
+  const Eigen::MatrixXd directions = sum.correlations.eigenvectors()(Eigen::all, kept);
   const Eigen::MatrixXd white =
-      root.cwiseInverse().asDiagonal() * directions.transpose() * inverse.asDiagonal();
+      root.cwiseInverse().asDiagonal() * directions.transpose() * sum.inverse_scale.asDiagonal();
   const SymmetricEigen part(white * one * white.transpose());
-  const Eigen::MatrixXd axes = scale.asDiagonal() * directions * root.asDiagonal() * part.eigenvectors();
+  const Eigen::MatrixXd axes = sum.scale.asDiagonal() * directions * root.asDiagonal() * part.eigenvectors();
   const Eigen::VectorXd larger = part.eigenvalues().cwiseMax((1.0 - part.eigenvalues().array()).matrix());
   return axes * larger.asDiagonal() * axes.transpose();
 }
