@@ -34,7 +34,18 @@ if(DOXYGEN_FOUND AND Python3_FOUND AND TARGET pcor_tool)
   set(DOXYGEN_QUIET YES)
   set(DOXYGEN_TOC_INCLUDE_HEADINGS 3)
   set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)
+  set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
   doxygen_add_docs(documentation include README.md CONTRIBUTING.md CHANGELOG.md docs data/models data/aircraft data/scenarios
     data/reference tests/hidden/results.md ${reference})
   add_dependencies(documentation reference_pages)
+
+  # The same without the pages that programs write, which takes seconds.
+  if(PCOR_TESTS)
+    file(MAKE_DIRECTORY ${reference})
+    file(READ ${PROJECT_BINARY_DIR}/Doxyfile.documentation doxyfile)
+    file(WRITE ${PROJECT_BINARY_DIR}/Doxyfile.warnings
+      "${doxyfile}HTML_EXTRA_FILES =\nOUTPUT_DIRECTORY = ${PROJECT_BINARY_DIR}/documentation_warnings\n")
+    add_test(NAME documentation.warnings COMMAND Doxygen::doxygen ${PROJECT_BINARY_DIR}/Doxyfile.warnings
+      WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  endif()
 endif()

@@ -6,7 +6,7 @@
 namespace pcor {
 
 /// Message for display: one line of at most 2000 characters; longer messages end in an ellipsis and their
-/// length. Control characters and invalid UTF-8 bytes become \x1b and the like.
+/// length. Control characters and invalid UTF-8 bytes become `\x1b` and the like.
 std::string sanitize_line(std::string_view message);
 
 /// Puts the message in pieces and at full length, without allocation: for signal handlers.
