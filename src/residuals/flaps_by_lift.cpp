@@ -33,7 +33,7 @@ constexpr double likely = 0.9;
 constexpr double robust_limit = 4.0;         // deviations
 constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
 constexpr std::size_t min_fast = 15;         // pieces
-constexpr int rounds = 10;
+constexpr int lift_rounds = 10;
 
 /// Means of 20 s.
 struct Piece {
@@ -239,7 +239,7 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
     ++fast;
   }
   if (fast < min_fast) return {};
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < lift_rounds; ++round) {
     const LiftLaw law(pieces);
     if (!law.rises()) return {};
     for (Piece& piece : pieces) piece.deficit = law.deficit(piece);
