@@ -259,7 +259,7 @@ void Analysis::find_search(const std::vector<std::size_t>& chosen) {
   marginalize(*scores_, shape_columns * as_index(added_.size()) + nuisances_);
   for (Eigen::MatrixXd* const products : {&scores_->information, &scores_->plain})
     products->diagonal().head(base_) += prior_;
-  search_ = std::make_unique<Search>(*scores_, base_, groups_);
+  search_ = std::make_unique<EffectSearch>(*scores_, base_, groups_);
 }
 
 void Analysis::take_out_common_noise(WhitenedSystem& scores) const {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "campaign/columns.hpp"
+#include "campaign/effect_search.hpp"
 #include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"
-#include "diagnose/search.hpp"
 #include "numerics/noise_model.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -65,7 +65,7 @@ class Analysis {
   NoiseModel noise_beside_offsets() const;
   /// Twice the gain in log-likelihood by slow drift against the first reference.
   double drift_gain() const { return drift_gain_; }
-  const Search& search() const { return *search_; }
+  const EffectSearch& search() const { return *search_; }
   const WhitenedSystem& scores() const { return *scores_; }
   /// Scores of the base followed by other columns instead of the candidates'. @param more in bins, of each
   /// flight against each reference @param keeps_shapes the uncertain shapes of the chosen effects stay
@@ -84,7 +84,7 @@ class Analysis {
   BinnedFlights binned(const std::vector<std::size_t>& groups) const;
 
   /// Coefficients of all columns, zero except those of base and groups.
-  /// @param estimate of base and groups, in the order of `Search::fit`
+  /// @param estimate of base and groups, in the order of `EffectSearch::fit`
   Eigen::VectorXd coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) const;
   /// Coefficients by maximum likelihood.
   Eigen::VectorXd coefficients(const std::vector<std::size_t>& groups) const {
@@ -173,7 +173,7 @@ class Analysis {
   Eigen::VectorXd coefficients_{};              // all columns, from the last noise estimate
   std::vector<Eigen::VectorXd> white_noise_{};  // whitened residuals after all findings
   std::unique_ptr<WhitenedSystem> scores_{};
-  std::unique_ptr<Search> search_{};
+  std::unique_ptr<EffectSearch> search_{};
   SearchResult result_{};
 };
 

@@ -182,7 +182,7 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
 std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                              std::size_t winner, const std::vector<std::size_t>& chosen) {
   constexpr double doubt_of_shape = 0.1;  // relative error of the shapes in the catalogue
-  const Search& search = analysis.search();
+  const EffectSearch& search = analysis.search();
   const auto margin = [](double chi2) {
     return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
   };
@@ -206,7 +206,7 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
 std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                               std::size_t winner, const std::vector<std::size_t>& chosen,
                               std::vector<Rival> rivals) {
-  const Search& search = analysis.search();
+  const EffectSearch& search = analysis.search();
   const GroupScore best = search.score(winner, chosen);
   const std::vector<std::size_t> others = set_without(chosen, winner);
   const double noisier = search.variance(others) / search.variance(chosen);
@@ -455,7 +455,7 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
 }
 
 std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis) {
-  const Search& search = analysis.search();
+  const EffectSearch& search = analysis.search();
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const double variance = search.variance(chosen);
   std::vector<Eigen::VectorXd> evidence;
@@ -506,7 +506,7 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
 std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                   const std::vector<Finding>& findings) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
-  const Search& search = analysis.search();
+  const EffectSearch& search = analysis.search();
   std::vector<UpperLimit> limits;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (search.is_absorbed(g) || candidates[g].is_variant) continue;

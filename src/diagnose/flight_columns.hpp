@@ -8,8 +8,8 @@
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include "campaign/columns.hpp"
+#include "campaign/effect_search.hpp"
 #include "diagnose/candidates.hpp"
-#include "diagnose/search.hpp"
 
 namespace pcor::internal {
 

@@ -8,8 +8,8 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include "campaign/columns.hpp"
+#include "campaign/effect_search.hpp"
 #include "campaign/whitened.hpp"
-#include "diagnose/search.hpp"
 
 namespace pcor::internal {
 

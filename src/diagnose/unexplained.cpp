@@ -243,7 +243,7 @@ void find_places(const Analysis& analysis, const std::vector<const Structure*>& 
     groups[k].bounds.resize(1);
   }
   const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, traced));
-  const Search search(scores, analysis.base(), groups);
+  const EffectSearch search(scores, analysis.base(), groups);
   for (std::size_t k = 0; k < traced.size(); ++k) {
     EmpiricalPredictor& variable = variables[k];
     const GroupScore total = search.score(count * k + blind, {count * k});
@@ -349,7 +349,7 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
   LineRival best;
   if (causes.empty()) return best;
   const Competition competition = analysis.competition(chosen, lines_in(analysis, causes));
-  const Search search(competition.system, analysis.base(), competition.groups);
+  const EffectSearch search(competition.system, analysis.base(), competition.groups);
   std::vector<std::size_t> effects(chosen.size());
   std::iota(effects.begin(), effects.end(), std::size_t{0});
   const auto prior = [](double expected, std::size_t tested_count) {

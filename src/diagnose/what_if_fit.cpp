@@ -284,7 +284,7 @@ WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const Candidate
       });
   const WhitenedSystem with_noise =
       find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);
-  const Search search(with_noise, base_, groups_);
+  const EffectSearch search(with_noise, base_, groups_);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     identifiable_[g].clear();
     for (const Eigen::Index column : search.identifiable(g))

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <pcor/report/report.hpp>
+#include "campaign/effect_search.hpp"
 #include "campaign/whitened.hpp"
 #include "diagnose/flight_columns.hpp"
-#include "diagnose/search.hpp"
 
 namespace pcor::internal {
 

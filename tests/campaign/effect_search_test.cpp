@@ -1,5 +1,5 @@
 // The search for missing effects on columns that are made up, against dense least squares and known truths.
-#include "diagnose/search.hpp"
+#include "campaign/effect_search.hpp"
 
 #include <gmock/gmock.h>
 
@@ -81,15 +81,15 @@ struct Problem {
     }
   }
 
-  Search search() {
+  EffectSearch search() {
     if (groups.empty()) group_by(1);
     scores = find_scores(FlightPartition(1), bins, {columns}, {residual}, noise);
-    return Search(scores, base, groups);
+    return EffectSearch(scores, base, groups);
   }
 };
 
 SearchResult run(Problem& problem, const SearchOptions& options = {}) {
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   return search.run(options);
 }
 
@@ -112,11 +112,11 @@ struct Dense {
 
 }  // namespace
 
-TEST(Search, FindsTheOnlyColumn) {
+TEST(EffectSearch, FindsTheOnlyColumn) {
   for (const double size : {0.3, -0.3}) {
     Problem problem(600, 20, 1, 0.7);
     problem.residual += size * problem.candidate(7);
-    const Search search = problem.search();
+    const EffectSearch search = problem.search();
     const SearchResult result = search.run({});
     ASSERT_THAT(result.chosen, ElementsAre(7U));
     const GroupScore score = search.score(7, {});
@@ -129,7 +129,7 @@ TEST(Search, FindsTheOnlyColumn) {
 }
 
 // A model whose own coefficients are off leaves much that they explain: it must not hide what is missing.
-TEST(Search, BaseEffectsHideNoColumn) {
+TEST(EffectSearch, BaseEffectsHideNoColumn) {
   for (const double offset : {0.0, 0.2, 1.0, 5.0}) {
     Problem problem(600, 20, 1, 0.7, offset);
     problem.residual += 0.3 * problem.candidate(7);
@@ -137,14 +137,14 @@ TEST(Search, BaseEffectsHideNoColumn) {
   }
 }
 
-TEST(Search, FindsAPair) {
+TEST(EffectSearch, FindsAPair) {
   Problem problem(600, 20, 2, 0.5);
   problem.residual += 0.3 * problem.candidate(4) - 0.25 * problem.candidate(15);
   EXPECT_THAT(run(problem).chosen, UnorderedElementsAre(4U, 15U));
 }
 
 // The third explains more than each of the two alone, and no more than both together.
-TEST(Search, FindsAPairDespiteAColumnNearTheirSum) {
+TEST(EffectSearch, FindsAPairDespiteAColumnNearTheirSum) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Problem problem(900, 12, seed);
     std::mt19937_64 engine(seed);
@@ -157,14 +157,14 @@ TEST(Search, FindsAPairDespiteAColumnNearTheirSum) {
   }
 }
 
-TEST(Search, StrongestEffectIsFirst) {
+TEST(EffectSearch, StrongestEffectIsFirst) {
   Problem problem(900, 10, 3);
   problem.residual += 0.2 * problem.candidate(1) + 0.6 * problem.candidate(8);
   EXPECT_THAT(run(problem).chosen, ElementsAre(8U, 1U));
 }
 
 // The strong effect has 1,000 standard errors, the weak one 12: a relative error of 2 % of a linear search.
-TEST(Search, AnEffectWithinTheErrorOfTheLinearSearchIsFoundAfterTheStrongOne) {
+TEST(EffectSearch, AnEffectWithinTheErrorOfTheLinearSearchIsFoundAfterTheStrongOne) {
   Problem problem(600, 20, 3);
   problem.residual += 0.25 * problem.candidate(7);
   EXPECT_THAT(run(problem).chosen, ElementsAre(7));
@@ -174,8 +174,8 @@ TEST(Search, AnEffectWithinTheErrorOfTheLinearSearchIsFoundAfterTheStrongOne) {
   EXPECT_THAT(run(problem).chosen, ElementsAre(7));
 }
 
-// Two similar effects of together 100 standard errors, each small beside the other.
-TEST(Search, OneOfTwoSimilarEffectsStaysBesideAStrongOne) {
+// Two similar effects of together 100 standard errors, each small compared with the other.
+TEST(EffectSearch, OneOfTwoSimilarEffectsStaysBesideAStrongOne) {
   Problem problem(600, 20, 3);
   problem.candidate(8) = 0.98 * problem.candidate(7) + 0.2 * problem.candidate(8);
   problem.residual += 20.0 * problem.candidate(4) + problem.candidate(7) + problem.candidate(8);
@@ -183,7 +183,7 @@ TEST(Search, OneOfTwoSimilarEffectsStaysBesideAStrongOne) {
 }
 
 // The same sizes, each effect seen by one of two references.
-TEST(Search, AnEffectThatAnotherReferenceSeesIsNotAnErrorOfLinearity) {
+TEST(EffectSearch, AnEffectThatAnotherReferenceSeesIsNotAnErrorOfLinearity) {
   Problem problem(600, 20, 3);
   problem.candidate(4).tail(300).setZero();
   problem.candidate(7).head(300).setZero();
@@ -199,7 +199,7 @@ TEST(Search, AnEffectThatAnotherReferenceSeesIsNotAnErrorOfLinearity) {
   noise.level = std::vector<Eigen::VectorXd>(2, Eigen::VectorXd::Constant(300, 0.5));
   const WhitenedSystem scores =
       find_scores(FlightPartition(2), bins, halves(problem.columns), halves(problem.residual), noise);
-  const Search search(scores, base, problem.groups);
+  const EffectSearch search(scores, base, problem.groups);
   SearchOptions options;
   EXPECT_THAT(search.run(options).chosen, ElementsAre(4));
   options.references = {0, 1};
@@ -207,22 +207,22 @@ TEST(Search, AnEffectThatAnotherReferenceSeesIsNotAnErrorOfLinearity) {
 }
 
 // One part in 40 is its own, 1/1600 of the variance: the base imitates it nearly, and yet it is seen.
-TEST(Search, ColumnNearlyInTheBaseIsFound) {
+TEST(EffectSearch, ColumnNearlyInTheBaseIsFound) {
   Problem problem(600, 5, 4);
   problem.candidate(3) = 40.0 * problem.columns.col(1) + 0.577 * problem.candidate(3);
   problem.residual += 2.0 * problem.candidate(3);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_FALSE(search.is_absorbed(3));
   EXPECT_NEAR(search.remaining(3), 0.577 * 0.577 / (1600.0 / 3.0), 2e-4);
   EXPECT_THAT(search.run({}).chosen, ElementsAre(3U));
 }
 
-TEST(Search, ColumnsInTheBaseAreAbsorbed) {
+TEST(EffectSearch, ColumnsInTheBaseAreAbsorbed) {
   Problem problem(600, 5, 4);
   // One part in 1e4 is its own: less than single precision holds of a column.
   problem.candidate(3) = 1e4 * problem.columns.col(1) + 0.577 * problem.candidate(3);
   problem.residual += 2.0 * problem.candidate(3);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_TRUE(search.is_absorbed(3));
   EXPECT_LT(search.remaining(3), 1e-6);
   EXPECT_EQ(search.score(3, {}).chi2, 0.0);
@@ -234,14 +234,14 @@ TEST(Search, ColumnsInTheBaseAreAbsorbed) {
 }
 
 // The base imitates the larger column of the group, so that its part of the contribution does not count.
-TEST(Search, RemainingShareIsThatOfTheWholeContribution) {
+TEST(EffectSearch, RemainingShareIsThatOfTheWholeContribution) {
   Problem problem(2000, 5, 41);
   problem.candidate(0) = 2.0 * problem.columns.col(1);
   problem.group_by(1);
   problem.groups[0].count = 2;
   problem.groups[0].bounds = {Bounds{}, Bounds{}};
   problem.groups.erase(problem.groups.begin() + 1);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   const Eigen::Vector2d coefficients(3.0, 0.2);
   const Eigen::VectorXd whole = problem.columns.middleCols(base, 2) * coefficients;
   const Eigen::MatrixXd of_base = problem.columns.leftCols(base);
@@ -251,19 +251,19 @@ TEST(Search, RemainingShareIsThatOfTheWholeContribution) {
               1e-9);  // rounding of sums of 2000 products
 }
 
-TEST(Search, EstimatesOutsideBoundsAreRejected) {
+TEST(EffectSearch, EstimatesOutsideBoundsAreRejected) {
   Problem problem(600, 8, 5);
   problem.residual -= 0.5 * problem.candidate(3);
   problem.group_by(1);
   problem.groups[3].bounds = {{0.0, 1.0}};
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_FALSE(search.score(3, {}).possible);
   EXPECT_THAT(search.run({}).chosen, testing::Not(testing::Contains(3U)));
   problem.groups[3].bounds = {{-1.0, 0.0}};
   EXPECT_THAT(problem.search().run({}).chosen, ElementsAre(3U));
 }
 
-TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
+TEST(EffectSearch, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
   Problem problem(600, 3, 6);
   problem.residual += 0.3 * problem.candidate(1);
   problem.group_by(1);
@@ -276,14 +276,14 @@ TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
 }
 
 // An effect of a usual size is more likely than a nearly equal one at a hundred times its usual size.
-TEST(Search, EffectOfTypicalSizeIsPreferred) {
+TEST(EffectSearch, EffectOfTypicalSizeIsPreferred) {
   Problem problem(600, 6, 21);
   problem.candidate(2) = 0.99 * problem.candidate(1) + 0.14 * problem.candidate(2);
   problem.residual += 0.3 * problem.candidate(1);
   problem.group_by(1);
   problem.groups[1].usual = {0.3};
   problem.groups[2].usual = {0.003};
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_GT(search.evidence({1}), search.evidence({2}) + 4.0);
   EXPECT_THAT(search.run({}).chosen, ElementsAre(1U));
   // But no size is impossible: without a rival, the effect is found.
@@ -302,12 +302,12 @@ TEST(Search, EffectOfTypicalSizeIsPreferred) {
 
 // The marginal likelihood of one column in normal noise of known size: chi2, size and error by the formula
 // of conjugate normal distributions. That the size of the noise is not known adds chi2^2/n.
-TEST(Search, EvidenceOfOneColumnEqualsTheFormula) {
+TEST(EffectSearch, EvidenceOfOneColumnEqualsTheFormula) {
   Problem problem(4000, 1, 23);
   problem.residual += 0.05 * problem.candidate(0);
   problem.group_by(1);
   problem.groups[0].usual = {0.05};
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   const GroupScore score = search.score(0, {});
   const double v = score.covariance(0, 0);
   const double b = score.estimate[0];
@@ -323,7 +323,7 @@ TEST(Search, EvidenceOfOneColumnEqualsTheFormula) {
 }
 
 // A set of two is dearer than the one that does as much.
-TEST(Search, OneEffectIsPreferredToAnEquivalentPair) {
+TEST(EffectSearch, OneEffectIsPreferredToAnEquivalentPair) {
   for (unsigned seed = 31; seed <= 40; ++seed) {
     Problem problem(900, 12, seed);
     problem.candidate(9) = problem.candidate(2) + problem.candidate(5);
@@ -333,11 +333,11 @@ TEST(Search, OneEffectIsPreferredToAnEquivalentPair) {
   }
 }
 
-TEST(Search, FindsAGroupOfTwoColumns) {
+TEST(EffectSearch, FindsAGroupOfTwoColumns) {
   Problem problem(600, 12, 7, 0.5);
   problem.group_by(2);
   problem.residual += 0.3 * problem.candidate(8) - 0.3 * problem.candidate(9);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   ASSERT_THAT(search.run({}).chosen, ElementsAre(4U));
   const GroupScore score = search.score(4, {});
   EXPECT_EQ(score.freedom, 2.0);
@@ -347,19 +347,19 @@ TEST(Search, FindsAGroupOfTwoColumns) {
 }
 
 // Whose columns are one and the same has one direction.
-TEST(Search, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
+TEST(EffectSearch, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
   Problem problem(600, 2, 8);
   problem.candidate(1) = 3.0 * problem.candidate(0);
   problem.residual += 0.5 * problem.candidate(0);
   problem.group_by(2);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   const GroupScore score = search.score(0, {});
   EXPECT_EQ(score.freedom, 1.0);
   // Together they are the effect; four errors of 0.02.
   EXPECT_NEAR(score.estimate[0] + 3.0 * score.estimate[1], 0.5, 0.1);
 }
 
-TEST(Search, OnlyOneShapeOfAnEffectIsChosen) {
+TEST(EffectSearch, OnlyOneShapeOfAnEffectIsChosen) {
   Problem problem(600, 6, 9);
   problem.residual += 0.4 * problem.candidate(0) + 0.4 * problem.candidate(1);
   problem.group_by(1);
@@ -367,13 +367,13 @@ TEST(Search, OnlyOneShapeOfAnEffectIsChosen) {
   EXPECT_THAT(run(problem).chosen, testing::AnyOf(ElementsAre(0U), ElementsAre(1U)));
 }
 
-TEST(Search, EstimatesEqualDenseLeastSquares) {
+TEST(EffectSearch, EstimatesEqualDenseLeastSquares) {
   Problem problem(300, 6, 10, 0.6, 1.0);
   // Units differ: hPa, degrees, per mille.
   problem.candidate(2) *= 1e4;
   problem.candidate(5) *= 1e-5;
   problem.residual += 3e-5 * problem.candidate(2) - 2e4 * problem.candidate(5);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   const auto [estimate, covariance] = search.fit({2, 5});
   const Dense dense(problem, {0, 1, base + 2, base + 5});
   // Rounding of normal equations whose condition, columns alike, is below 1e3.
@@ -395,7 +395,7 @@ TEST(Search, EstimatesEqualDenseLeastSquares) {
 }
 
 // 0.3 % of flights without any effect may be claimed: 1.2 of 400, and more than 6 once in 4000 times.
-TEST(Search, NoiseGivesNoFinding) {
+TEST(EffectSearch, NoiseGivesNoFinding) {
   int claims = 0;
   double threshold = 0.0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
@@ -415,7 +415,7 @@ TEST(Search, NoiseGivesNoFinding) {
 
 // Without the sign flips, which only remove findings, chance has its nominal rate: 20 of 400 at 5 %,
 // deviation 4.4.
-TEST(Search, ThresholdHasTheStatedFalseAlarmRate) {
+TEST(EffectSearch, ThresholdHasTheStatedFalseAlarmRate) {
   int above = 0;
   for (unsigned seed = 1; seed <= 400; ++seed) {
     Problem problem(300, 12, 5000 + seed, 0.7);
@@ -423,7 +423,7 @@ TEST(Search, ThresholdHasTheStatedFalseAlarmRate) {
     options.draws = 2000;
     options.confidence = 0.95;
     options.seed = seed;
-    const Search search = problem.search();
+    const EffectSearch search = problem.search();
     const double threshold = search.run(options).threshold;
     double best = 0.0;
     for (std::size_t g = 0; g < 12; ++g) best = std::max(best, search.score(g, {}).equivalent);
@@ -433,7 +433,7 @@ TEST(Search, ThresholdHasTheStatedFalseAlarmRate) {
   EXPECT_LE(above, 20 + 14);
 }
 
-TEST(Search, NoiseWithHeavyTailsIsNotAnEffect) {
+TEST(EffectSearch, NoiseWithHeavyTailsIsNotAnEffect) {
   int claims = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
     Problem problem(300, 30, 9000 + seed, 0.5);
@@ -449,7 +449,7 @@ TEST(Search, NoiseWithHeavyTailsIsNotAnEffect) {
 }
 
 // Draws in the directions of eigenvectors, which rounding errors choose, gave thresholds up to 7 % apart.
-TEST(Search, ThresholdOfGroupsDoesNotDependOnRoundingErrors) {
+TEST(EffectSearch, ThresholdOfGroupsDoesNotDependOnRoundingErrors) {
   for (const Eigen::Index count : {1, 2, 3}) {
     std::vector<double> thresholds;
     for (const double disturbance : {0.0, 1e-15, -2e-15}) {
@@ -464,7 +464,7 @@ TEST(Search, ThresholdOfGroupsDoesNotDependOnRoundingErrors) {
   }
 }
 
-TEST(Search, RepeatedRunsGiveTheSameResult) {
+TEST(EffectSearch, RepeatedRunsGiveTheSameResult) {
   Problem problem(300, 20, 11, 0.5);
   problem.residual += 0.3 * problem.candidate(6);
   const SearchResult first = run(problem);
@@ -474,7 +474,7 @@ TEST(Search, RepeatedRunsGiveTheSameResult) {
   EXPECT_EQ(first.p_values, second.p_values);
 }
 
-TEST(Search, GivenThresholdAndMaximumNumberAreApplied) {
+TEST(EffectSearch, GivenThresholdAndMaximumNumberAreApplied) {
   Problem problem(600, 10, 12);
   for (Eigen::Index c = 0; c < 6; ++c) problem.residual += 0.5 * problem.candidate(c);
   SearchOptions options;
@@ -485,9 +485,9 @@ TEST(Search, GivenThresholdAndMaximumNumberAreApplied) {
   EXPECT_THAT(run(problem, options).chosen, IsEmpty());
 }
 
-TEST(Search, EmptySearchFindsNoColumn) {
+TEST(EffectSearch, EmptySearchFindsNoColumn) {
   Problem problem(300, 0, 13);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_THAT(search.run({}).chosen, IsEmpty());
   EXPECT_NEAR(search.variance({}), 1.0, 0.4);
 }
@@ -496,7 +496,7 @@ TEST(Correlation, SignIsThatOfTheColumns) {
   Problem problem(2000, 4, 14);
   problem.candidate(1) = 0.8 * problem.candidate(0) + 0.6 * problem.candidate(1);
   problem.candidate(2) = -0.8 * problem.candidate(0) + 0.6 * problem.candidate(2);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   // Samples with a memory of 0.8 count like 2000/9, so correlations of 0 have a deviation of 0.07.
   EXPECT_NEAR(search.correlation(0, 1, {}), 0.8, 0.1);
   EXPECT_NEAR(search.correlation(0, 2, {}), -0.8, 0.1);
@@ -520,7 +520,7 @@ TEST(Correlation, UsesColumnsWithoutTheirPartInTheBase) {
 TEST(LeftoverRows, AreOrthogonalToBaseAndOtherFindings) {
   Problem problem(400, 6, 16, 0.7);
   problem.residual += 0.5 * problem.candidate(1) + 0.3 * problem.candidate(4);
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   const Eigen::VectorXd rows = search.leftover_rows(1, {1, 4})[0];
   const Eigen::MatrixXd white = problem.columns / problem.noise.level[0][0];
   for (const Eigen::Index column : {Eigen::Index{0}, Eigen::Index{1}, base + 4})
@@ -552,26 +552,26 @@ TEST(OneDegreeEquivalent, HasTheSameTailProbability) {
 
 // An effect whose shape in nature differs from the formula leaves a rest; a second effect that resembles that
 // rest is not named where the uncertainty of the shape explains it, and another second effect is.
-TEST(Search, UncertainShapeIsNotASecondEffect) {
+TEST(EffectSearch, UncertainShapeIsNotASecondEffect) {
   Problem problem(600, 4, 31);
   const Eigen::VectorXd rest = problem.candidate(3);  // column of the uncertain shape of the first effect
   problem.candidate(1) = rest + 0.2 * problem.candidate(1);
   problem.residual += 2.0 * problem.candidate(0) + 0.5 * rest + 0.4 * problem.candidate(2);
   problem.group_by(1);
   problem.groups.pop_back();
-  const Search exact = problem.search();
+  const EffectSearch exact = problem.search();
   EXPECT_THAT(exact.run({}).chosen, UnorderedElementsAre(0U, 1U, 2U));
   const double evidence = exact.score(0, {}).chi2;
   problem.groups[0].shape_first = 3;
   problem.groups[0].shape_count = 1;
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_THAT(search.run({}).chosen, UnorderedElementsAre(0U, 2U));
   // The first effect keeps its evidence.
   EXPECT_DOUBLE_EQ(search.score(0, {}).chi2, evidence);
 }
 
 // A column of an uncertain shape that is zero except for rounding changes no result.
-TEST(Search, ShapeOfRoundingErrorsExplainsNothing) {
+TEST(EffectSearch, ShapeOfRoundingErrorsExplainsNothing) {
   Problem problem(600, 4, 31);
   problem.residual += 2.0 * problem.candidate(0) + 0.4 * problem.candidate(2);
   problem.candidate(3) *= 1e-15;
@@ -581,13 +581,13 @@ TEST(Search, ShapeOfRoundingErrorsExplainsNothing) {
   const double evidence = problem.search().evidence({0, 2});
   problem.groups[0].shape_first = 3;
   problem.groups[0].shape_count = 1;
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_DOUBLE_EQ(search.variance({0, 2}), variance);
   EXPECT_DOUBLE_EQ(search.evidence({0, 2}), evidence);
 }
 
 // An effect that resembles the uncertain shape of one finding is not a rival of another finding.
-TEST(Search, UncertainShapeIsNotARivalOfAnotherFinding) {
+TEST(EffectSearch, UncertainShapeIsNotARivalOfAnotherFinding) {
   Problem problem(600, 4, 31);
   const Eigen::VectorXd rest = problem.candidate(3);
   problem.candidate(1) = rest + 0.2 * problem.candidate(1);
@@ -596,13 +596,13 @@ TEST(Search, UncertainShapeIsNotARivalOfAnotherFinding) {
   problem.groups.pop_back();
   problem.groups[0].shape_first = 3;
   problem.groups[0].shape_count = 1;
-  const Search search = problem.search();
+  const EffectSearch search = problem.search();
   EXPECT_GT(search.evidence({0, 1}, {}), search.evidence({0, 2}, {}));
   EXPECT_GT(search.evidence({0, 2}, {0}), search.evidence({0, 1}, {0}) + 10.0);
 }
 
 // The usual shape of an effect is preferred on its own system; another system is another finding.
-TEST(Search, UsualShapeIsPreferredOnlyOnTheSameSystem) {
+TEST(EffectSearch, UsualShapeIsPreferredOnlyOnTheSameSystem) {
   Problem problem(600, 2, 31);
   problem.candidate(1) = problem.candidate(0) + 0.03 * problem.candidate(1);
   problem.residual += 1.0 * problem.candidate(1);

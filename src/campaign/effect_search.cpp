@@ -1,4 +1,4 @@
-#include "diagnose/search.hpp"
+#include "campaign/effect_search.hpp"
 
 #include <boost/random/normal_distribution.hpp>
 
@@ -27,7 +27,7 @@ constexpr double errors_beyond_bounds = 2.0;
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
 /// Size of an effect, relative to a stronger one, that errors of the linear search may imitate; 0.5 to 1.4 %
-/// were seen beside a drift of 0.4 hPa/h and a gain of 1 %.
+/// were seen with a drift of 0.4 hPa/h and a gain of 1 %.
 constexpr double linear_to = 0.02;
 
 // The mixture adds components with sizes larger and much smaller by `spread_of_sizes`; the small one
@@ -137,7 +137,8 @@ double distinct_squares(const Eigen::MatrixXd& information, const std::vector<Ei
   return std::max(0.0, coefficients.dot(information(own, own) * coefficients) - imitated);
 }
 
-Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
+EffectSearch::EffectSearch(const WhitenedSystem& scores, Eigen::Index base,
+                           const std::vector<ColumnGroup>& groups)
     : scores_(&scores), base_(base), groups_(groups) {
   const Eigen::Index columns = scores.columns();
   const Eigen::Index tested = columns - base;
@@ -190,7 +191,7 @@ Search::Search(const WhitenedSystem& scores, Eigen::Index base, const std::vecto
   score_ = turn.transpose() * left_score_;
 }
 
-double Search::remaining(std::size_t group, const Eigen::VectorXd& coefficients) const {
+double EffectSearch::remaining(std::size_t group, const Eigen::VectorXd& coefficients) const {
   const std::vector<Eigen::Index> own = indices_of(groups_[group], base_);
   const double whole = coefficients.dot(scores_->plain(own, own) * coefficients);
   if (!(whole > 0.0)) return 0.0;
@@ -198,7 +199,7 @@ double Search::remaining(std::size_t group, const Eigen::VectorXd& coefficients)
       1.0, distinct_squares(scores_->plain, indices_of({}, groups_, base_), own, coefficients) / whole);
 }
 
-std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set) const {
+std::vector<Eigen::Index> EffectSearch::shapes_of(const std::vector<std::size_t>& set) const {
   std::vector<Eigen::Index> shapes;
   for (const std::size_t group : set) {
     for (Eigen::Index k = 0; k < groups_[group].shape_count; ++k) {
@@ -209,7 +210,7 @@ std::vector<Eigen::Index> Search::shapes_of(const std::vector<std::size_t>& set)
   return shapes;
 }
 
-Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
+EffectSearch::Conditional EffectSearch::given(const std::vector<std::size_t>& groups) const {
   Conditional result{information_, score_, squares_, 1.0};
   std::vector<Eigen::Index> indices;  // turned columns of the groups
   for (const std::size_t group : groups) {
@@ -239,7 +240,7 @@ Search::Conditional Search::given(const std::vector<std::size_t>& groups) const 
   return result;
 }
 
-GroupScore Search::score_in(const Conditional& conditional, std::size_t group) const {
+GroupScore EffectSearch::score_in(const Conditional& conditional, std::size_t group) const {
   GroupScore result;
   const ColumnGroup& columns = groups_[group];
   const Eigen::Index count = turned_[group].cols();
@@ -272,12 +273,13 @@ GroupScore Search::score_in(const Conditional& conditional, std::size_t group) c
   return result;
 }
 
-GroupScore Search::score(std::size_t group, const std::vector<std::size_t>& others) const {
+GroupScore EffectSearch::score(std::size_t group, const std::vector<std::size_t>& others) const {
   return score_in(given(set_without(others, group)), group);
 }
 
-Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
-                                    std::vector<Directions>& directions) const {
+Eigen::MatrixXd EffectSearch::normal_turn(const Conditional& conditional,
+                                          const std::vector<std::size_t>& groups,
+                                          std::vector<Directions>& directions) const {
   Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(information_.cols(), information_.cols());
   Eigen::Index width = 0;
   directions.clear();
@@ -295,8 +297,8 @@ Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::v
   return turn.leftCols(width);
 }
 
-double Search::threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
-                            const SearchOptions& options) const {
+double EffectSearch::threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
+                                  const SearchOptions& options) const {
   std::vector<Directions> directions;
   const Eigen::MatrixXd turn = normal_turn(conditional, groups, directions);
   if (turn.cols() == 0) return std::numeric_limits<double>::infinity();
@@ -312,8 +314,8 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
   return maxima[static_cast<std::size_t>(position)];
 }
 
-std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
-                                                   const std::vector<std::size_t>& others) const {
+std::vector<Eigen::VectorXd> EffectSearch::leftover_rows(std::size_t group,
+                                                         const std::vector<std::size_t>& others) const {
   const Eigen::Index columns = scores_->columns();
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // weights of the unscaled columns
   const ColumnGroup& own = groups_[group];
@@ -335,7 +337,8 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
   return rows;
 }
 
-double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const {
+double EffectSearch::level(std::size_t winner, const std::vector<std::size_t>& chosen,
+                           double threshold) const {
   const std::vector<Eigen::VectorXd> rows = leftover_rows(winner, chosen);
   const Eigen::VectorXd information =
       scores_->by_minutes([&rows](std::size_t f) { return rows[f].cwiseAbs2(); });
@@ -354,25 +357,25 @@ double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen,
   return threshold * std::max(1.0, noise.squaredNorm() / variance(with));
 }
 
-std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
+std::vector<Eigen::VectorXd> EffectSearch::left(const std::vector<std::size_t>& chosen) const {
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
   coefficients(indices_of(chosen, groups_, base_)) = fit(chosen).estimate;
   return scores_->left(coefficients);
 }
 
-bool Search::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
+bool EffectSearch::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
   return std::any_of(chosen.begin(), chosen.end(), [&](std::size_t each) {
     return each != group && groups_[each].effect == groups_[group].effect;
   });
 }
 
-bool Search::all_possible(const std::vector<std::size_t>& chosen) const {
+bool EffectSearch::all_possible(const std::vector<std::size_t>& chosen) const {
   return std::all_of(chosen.begin(), chosen.end(), [&](std::size_t group) {
     return !is_taken(group, chosen) && score(group, chosen).possible;
   });
 }
 
-Eigen::VectorXd Search::precision_of(std::size_t group, double times) const {
+Eigen::VectorXd EffectSearch::precision_of(std::size_t group, double times) const {
   const ColumnGroup& columns = groups_[group];
   // Unknown sizes are limited by the rest of the residual.
   Eigen::VectorXd precision =
@@ -385,7 +388,8 @@ Eigen::VectorXd Search::precision_of(std::size_t group, double times) const {
   return precision;
 }
 
-double Search::log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const {
+double EffectSearch::log_ratio(const std::vector<Eigen::Index>& columns,
+                               const Eigen::VectorXd& precision) const {
   const Eigen::VectorXd deviation = precision.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inner = deviation.asDiagonal() * left_(columns, columns) * deviation.asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
@@ -396,8 +400,8 @@ double Search::log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::
   return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) - determinant;
 }
 
-double Search::evidence(const std::vector<std::size_t>& set,
-                        const std::vector<std::size_t>& uncertain) const {
+double EffectSearch::evidence(const std::vector<std::size_t>& set,
+                              const std::vector<std::size_t>& uncertain) const {
   std::vector<Eigen::Index> columns;
   std::vector<Eigen::Index> begin;
   for (const std::size_t group : set) {
@@ -431,7 +435,7 @@ double Search::evidence(const std::vector<std::size_t>& set,
   return best + std::accumulate(share.begin(), share.end(), 0.0);
 }
 
-void Search::improve(std::vector<std::size_t>& chosen, double price) const {
+void EffectSearch::improve(std::vector<std::size_t>& chosen, double price) const {
   const auto merit = [&](const std::vector<std::size_t>& set) {
     return evidence(set) - price * static_cast<double>(set.size());
   };
@@ -461,7 +465,7 @@ void Search::improve(std::vector<std::size_t>& chosen, double price) const {
   }
 }
 
-void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
+void EffectSearch::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
   constexpr double significant = 4.5;  // change of the log likelihood, chi2 of 9
   for (std::size_t& group : chosen) {
     const auto usual = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
@@ -475,7 +479,7 @@ void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
   }
 }
 
-std::vector<std::size_t>::iterator Search::first_error_of_linearity(
+std::vector<std::size_t>::iterator EffectSearch::first_error_of_linearity(
     const std::vector<std::size_t>& references, std::vector<std::size_t>& chosen) const {
   const Eigen::Index count =
       references.empty() ? 1 : as_index(*std::max_element(references.begin(), references.end())) + 1;
@@ -496,7 +500,7 @@ std::vector<std::size_t>::iterator Search::first_error_of_linearity(
   return chosen.begin() + (weak - squares.begin());
 }
 
-SearchResult Search::run(const SearchOptions& options) const {
+SearchResult EffectSearch::run(const SearchOptions& options) const {
   SearchResult result;
   std::vector<std::size_t> open;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -560,7 +564,7 @@ SearchResult Search::run(const SearchOptions& options) const {
   return result;
 }
 
-double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const {
+double EffectSearch::correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const {
   const Conditional conditional = given(set_without(set_without(others, a), b));
   std::vector<Directions> directions;
   const Eigen::MatrixXd turn = normal_turn(conditional, {a, b}, directions);
@@ -571,7 +575,7 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
   return std::clamp(singular_values(across)[0], 0.0, 1.0);
 }
 
-SearchFit Search::fit(const std::vector<std::size_t>& chosen) const {
+SearchFit EffectSearch::fit(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> indices = indices_of({}, groups_, base_);  // positions among the scores' columns
   std::vector<Eigen::Index> out = indices;                             // positions among the estimates
   Eigen::VectorXd prior = Eigen::VectorXd::Zero(scores_->columns());   // precision of each of these

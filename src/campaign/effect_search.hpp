@@ -96,11 +96,11 @@ struct SearchFit {
 };
 
 /// Search for groups of columns that explain residuals beyond the base.
-class Search {
+class EffectSearch {
  public:
   /// @param scores are kept by address; @param base number of the scores' columns that belong to the model;
   /// the rest are those of the groups
-  Search(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
+  EffectSearch(const WhitenedSystem& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
 
   /// Fraction of the variance of a group's best direction that the base leaves, 0 to 1.
   double remaining(std::size_t group) const { return remaining_[group]; }
