@@ -1,5 +1,8 @@
 #include "campaign/gps_system.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <numeric>
 
 #include "campaign/gps_noise.hpp"
@@ -94,6 +97,17 @@ double thermometer_of(const GpsSystem& system, const std::vector<double>& usual)
   const Eigen::Index count = law + gps_shared_nuisances;
   return gps_nuisances.front().deviation *
          pseudo_solution(products.topLeftCorner(count, count), products.col(count).head(count))[law];
+}
+
+std::string disagreement_of_gps(double variance) {
+  constexpr double notable = 2.0;
+  const double factor = std::sqrt(variance);
+  if (factor < notable) return "";
+  return fmt::format(
+      "the halves of the flights, or wind and height, disagree {:.1f} times more than their "
+      "noise explains, so the errors by GPS are {:.1f} times larger; give a laser or a second "
+      "system as a further reference, or exclude changes of the weather (--intervals)",
+      factor, factor);
 }
 
 std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSamples& samples,

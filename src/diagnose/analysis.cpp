@@ -1,7 +1,9 @@
 #include "diagnose/analysis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
+#include "numerics/variance_factor.hpp"
 #include "numerics/whitening.hpp"
 #include "residuals/flight_statistics.hpp"
 
@@ -79,6 +82,65 @@ Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
     const double by_drift = search_from(start, false);
     if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true);
   }
+  if (nuisances_ > 0) find_gps_variance();
+}
+
+void Analysis::find_gps_variance() {
+  constexpr int max_rounds_of_variance = 4;
+  constexpr double notable = 1.05;  // ratio of two factors; no result depends on it
+  SearchOptions options;
+  options.seed = random_seed;
+  options.references = binned_.reference;
+  for (int round = 0; round < max_rounds_of_variance; ++round) {
+    const double before = std::exchange(gps_variance_, gps_variance_with(result_.chosen));
+    if (std::max(before, gps_variance_) < notable * std::min(before, gps_variance_)) break;
+    find_search(result_.chosen);
+    result_ = search_->run(options);
+  }
+  coefficients_ = coefficients(result_.chosen);
+}
+
+double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) {
+  std::vector<Eigen::Index> columns = indices_of(chosen);
+  const Eigen::Index tested = as_index(columns.size());
+  uncertainty_ = find_shape_uncertainty(chosen);
+  WhitenedSystem system = whiten(binned_.columns, true);
+  take_out_common_noise(system);
+  for (Eigen::Index k = binned_.columns.front().cols(); k < system.columns(); ++k) columns.push_back(k);
+  const Eigen::Index count = as_index(columns.size());
+  columns.push_back(system.columns());
+  Eigen::MatrixXd information = system.information(columns, columns);
+  information.diagonal().head(tested) += precision_of(chosen);
+  information.diagonal().segment(tested, count - tested).array() += 1.0;
+  const Eigen::MatrixXd covariance = information_inverse(information.topLeftCorner(count, count));
+  const Eigen::VectorXd estimate = covariance * information.col(count).head(count);
+
+  using Halves = std::array<Eigen::MatrixXd, 2>;
+  const auto halves = share_.of_each_flight<Halves>([&](std::size_t f) {
+    Halves own;
+    own.fill(Eigen::MatrixXd::Zero(count + 1, count + 1));
+    if (!flight(f).is_by_gps || binned_.bins[f].size() == 0) return own;
+    const std::vector<double>& time = binned_.bins[f].time();
+    const double middle = 0.5 * (time.front() + time.back());
+    const Eigen::MatrixXd rows = system.rows[f](Eigen::all, columns);
+    std::array<std::vector<Eigen::Index>, 2> numbers;
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+      numbers[time[static_cast<std::size_t>(system.bin_of(f, i))] < middle ? 0 : 1].push_back(i);
+    for (std::size_t half = 0; half < 2; ++half) own[half] = products_of(rows(numbers[half], Eigen::all));
+    return own;
+  });
+  std::vector<InformationPart> parts;
+  std::map<std::size_t, Eigen::MatrixXd> references;
+  for (std::size_t f = 0; f < halves.size(); ++f) {
+    if (!flight(f).is_by_gps) continue;
+    for (const Eigen::MatrixXd& half : halves[f]) parts.push_back(part_of_rows(half, estimate));
+    const auto [sum, is_new] = references.try_emplace(flight(f).reference, halves[f][0] + halves[f][1]);
+    if (!is_new) sum->second += halves[f][0] + halves[f][1];
+  }
+  if (reference_count() > 1) {
+    for (const auto& [number, sum] : references) parts.push_back(part_of_rows(sum, estimate));
+  }
+  return variance_factor(parts, covariance, tested, gps_variance_);
 }
 
 double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
@@ -236,6 +298,7 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns, boo
     white[f].rows = Eigen::MatrixXd::Zero(gps.rows.rows(), own + nuisances_ + 1);
     white[f].rows.leftCols(taken) = gps.rows.leftCols(taken).cast<double>();
     white[f].rows.rightCols(nuisances_ + 1) = gps.rows.rightCols(nuisances_ + 1).cast<double>();
+    white[f].rows /= std::sqrt(gps_variance_);
     const std::vector<std::size_t>& records = binned_.bins[f].records();
     for (const std::size_t record : gps.record) {
       const auto next = std::upper_bound(records.begin(), records.end(), record) - records.begin();
@@ -243,7 +306,13 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns, boo
           binned_.bins[f].bins()[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next, 1) - 1)]);
     }
   }
-  return find_scores(share_, binned_.bins, all, binned_.residuals, noise_, white);
+  WhitenedSystem system = find_scores(share_, binned_.bins, all, binned_.residuals, noise_, white);
+  if (nuisances_ > 0) {
+    const auto of_gps = share_.sum_of_each_flight<double>(
+        [&white](std::size_t f) { return static_cast<double>(white[f].rows.rows()); });
+    system.row_count -= static_cast<std::size_t>(of_gps * (1.0 - 1.0 / gps_variance_));
+  }
+  return system;
 }
 
 void Analysis::find_search(const std::vector<std::size_t>& chosen) {
@@ -314,11 +383,8 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
   return result;
 }
 
-/// Coefficients that the rows hardly constrain stay near their usual size: a prior as in the search.
-Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
-                                   const std::vector<std::size_t>& groups) const {
-  const Eigen::Index count = products.cols() - 1;
-  Eigen::VectorXd precision = Eigen::VectorXd::Zero(count);
+Eigen::VectorXd Analysis::precision_of(const std::vector<std::size_t>& groups) const {
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(as_index(indices_of(groups).size()));
   precision.head(base_) = prior_;
   Eigen::Index position = base_;
   for (const std::size_t group : groups) {
@@ -328,9 +394,16 @@ Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
     }
     position += groups_[group].count;
   }
+  return precision;
+}
+
+/// Coefficients that the rows hardly constrain stay near their usual size: a prior as in the search.
+Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
+                                   const std::vector<std::size_t>& groups) const {
+  const Eigen::Index count = products.cols() - 1;
   Eigen::MatrixXd normal = products.topLeftCorner(count, count);
   // Unit: variance of the rows.
-  normal.diagonal() += products(count, count) / std::max(rows, 1.0) * precision;
+  normal.diagonal() += products(count, count) / std::max(rows, 1.0) * precision_of(groups);
   return pseudo_solution(normal, products.col(count).head(count));
 }
 

@@ -75,6 +75,8 @@ class Analysis {
   /// of each flight against each reference: one column for each rival and reference
   Competition competition(const std::vector<std::size_t>& chosen,
                           const std::vector<Eigen::MatrixXd>& rivals) const;
+  /// Factor of the variance of GPS, from halves of flights and from references; 1 without GPS.
+  double gps_variance() const { return gps_variance_; }
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
@@ -121,6 +123,9 @@ class Analysis {
   /// Iterates noise and effects until they are stable. Returns the likelihood of the result minus the cost of
   /// its effects. @param generous removes all candidate effects before the first noise estimate
   double search_from(const Eigen::VectorXd& start, bool generous);
+  /// Finds the factor of the variance of GPS, and repeats the search with it.
+  void find_gps_variance();
+  double gps_variance_with(const std::vector<std::size_t>& chosen);
   void replace_outliers(const Eigen::VectorXd& coefficients);
   /// @param is_rough a first estimate without slow drift
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients, bool is_rough);
@@ -146,6 +151,8 @@ class Analysis {
   }
   /// Columns and residual of a flight as a refit has them: in bins, or the white rows of GPS.
   Eigen::MatrixXd rows_of_refit(std::size_t flight, const std::vector<Eigen::Index>& indices) const;
+  /// Inverse variances of the priors of base and groups.
+  Eigen::VectorXd precision_of(const std::vector<std::size_t>& groups) const;
   /// Coefficients of base and groups from the products of their columns and the residual with each other.
   /// @param rows number of rows in the products
   Eigen::VectorXd solution(const Eigen::MatrixXd& products, double rows,
@@ -167,6 +174,7 @@ class Analysis {
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
   Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS
+  double gps_variance_ = 1.0;                   // the whitened rows of GPS are divided by its root
   Eigen::VectorXd prior_;                       // inverse variances of the coefficients of the base
   std::vector<Eigen::VectorXd> added_{};        // coefficients of all columns for each added effect
   std::vector<Eigen::MatrixXd> uncertainty_{};  // columns of uncertain shapes of each flight, in bins

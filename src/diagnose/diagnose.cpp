@@ -10,6 +10,7 @@
 #include <pcor/base/error.hpp>
 #include <pcor/roles/add_effects.hpp>
 #include "campaign/gps_rows.hpp"
+#include "campaign/gps_system.hpp"
 #include "campaign/reference_id.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
@@ -267,6 +268,8 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
 
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), added_of(model, set.base),
                           prior_of(references, set.base));
+  const std::string disagreement = disagreement_of_gps(analysis.gps_variance());
+  if (!disagreement.empty()) diagnosis.notes.push_back(warning_note(disagreement));
   diagnosis.threshold = analysis.result().threshold;
   diagnosis.findings = findings_of(analysis, references, set.candidates);
   found = diagnosis.findings;

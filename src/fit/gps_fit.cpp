@@ -16,6 +16,7 @@
 #include "fit/fit_task.hpp"
 #include "model_io/sensor_doubt.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/variance_factor.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -36,6 +37,9 @@ struct Part {
     archive(blocks, defects, samples);
   }
 };
+
+/// For each block of a flight, the index of each reference and its products of `Part::blocks`.
+using BlockProducts = std::map<std::int64_t, std::vector<std::pair<std::size_t, Eigen::MatrixXd>>>;
 
 /// Noise of a flight against one reference, and the relative width of its outliers.
 struct FlightState {
@@ -86,7 +90,9 @@ class GpsSolver {
     constexpr int rounds = 5;
     for (int round = 0; round < rounds; ++round) {
       read(round < rounds_with_noise, round == rounds - 2);
+      const Eigen::VectorXd from = requested_values();
       step();
+      if (round + 1 >= rounds_with_noise) find_variance(from);
     }
     const Eigen::VectorXd before_last = requested_values();
     columns_ = flights_.front()->setup().parameters();
@@ -155,7 +161,7 @@ class GpsSolver {
 
   /// @param with_noise, with_outliers only without columns of fixed coefficients
   void read(bool with_noise, bool with_outliers) {
-    std::vector<std::map<std::int64_t, Eigen::MatrixXd>> blocks(task_.flights.size());
+    std::vector<BlockProducts> blocks(task_.flights.size());
     defects_ = Eigen::MatrixXd::Zero(count_, count_);
     samples_ = 0;
     for (std::size_t r = 0; r < flights_.size(); ++r) {
@@ -166,10 +172,8 @@ class GpsSolver {
           },
           solution_.values);
       for (std::size_t f = 0; f < parts.size(); ++f) {
-        for (const auto& [block, products] : parts[f].blocks) {
-          const auto [sum, is_new] = blocks[f].try_emplace(block, products);
-          if (!is_new) sum->second += products;
-        }
+        for (const auto& [block, products] : parts[f].blocks)
+          blocks[f][block].emplace_back(r, products / variance_);
         defects_ += parts[f].defects;
         samples_ += parts[f].samples;
       }
@@ -182,30 +186,47 @@ class GpsSolver {
     eliminate_own(blocks);
   }
 
-  void eliminate_own(const std::vector<std::map<std::int64_t, Eigen::MatrixXd>>& flights) {
+  void eliminate_own(const std::vector<BlockProducts>& flights) {
     const Eigen::Index own = gps_nuisance_count - gps_shared_nuisances;
     const Eigen::Index size = shared();
     matrix_ = Eigen::MatrixXd::Zero(size, size);
     right_ = Eigen::VectorXd::Zero(size);
     by_fixed_ = Eigen::MatrixXd::Zero(size, fixed());
     products_.clear();
-    for (const auto& blocks : flights) {
+    parts_.clear();
+    std::vector<Eigen::MatrixXd> references(flights_.size(), Eigen::MatrixXd::Zero(size + 1, size + 1));
+    for (const BlockProducts& blocks : flights) {
+      if (blocks.empty()) continue;
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1 + fixed());
       sum.diagonal().segment(size, own) = nuisance_deviation_.tail(own).cwiseAbs2().cwiseInverse();
-      for (const auto& [block, products] : blocks) sum += products;
+      for (const auto& [block, of_references] : blocks) {
+        for (const auto& [reference, products] : of_references) sum += products;
+      }
       // Rows minus the part explained by the flight's nuisances: columns less own times these.
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
       without.middleRows(size, own) =
           -sum.block(size, size, own, own).ldlt().solve(sum.block(size, 0, own, all() + 1) * without);
-      for (const auto& [block, products] : blocks)
-        products_.emplace_back(without.transpose() * products.leftCols(all() + 1) * without);
+      const std::int64_t middle = (blocks.begin()->first + blocks.rbegin()->first) / 2;
+      std::vector<Eigen::MatrixXd> halves(2 * flights_.size(), Eigen::MatrixXd::Zero(size + 1, size + 1));
+      for (const auto& [block, of_references] : blocks) {
+        products_.emplace_back(Eigen::MatrixXd::Zero(size + 1, size + 1));
+        for (const auto& [reference, products] : of_references) {
+          const Eigen::MatrixXd own_products = without.transpose() * products.leftCols(all() + 1) * without;
+          products_.back() += own_products;
+          references[reference] += own_products;
+          halves[2 * reference + (block > middle ? 1 : 0)] += own_products;
+        }
+      }
+      parts_.insert(parts_.end(), halves.begin(), halves.end());
       const Eigen::MatrixXd left = without.transpose() * sum.leftCols(all() + 1) * without;
       matrix_ += left.topLeftCorner(size, size);
       right_ += left.col(size).head(size);
       by_fixed_ += without.leftCols(size).transpose() * sum.rightCols(fixed());
     }
+    if (references.size() > 1 || !is_alone_)
+      parts_.insert(parts_.end(), references.begin(), references.end());
     for (Eigen::Index k = 0; k < count_; ++k) {
       if (prior_deviation_[k] > 0.0) continue;
       const double information = matrix_(k, k);
@@ -275,6 +296,16 @@ class GpsSolver {
     keep_bounds();
     solution_.values(requested_) = before_ + change_.head(count_);
     warmer_ = change_[count_];
+  }
+
+  /// Finds the factor of the variance of GPS, after a step. @param from values of the requested coefficients
+  /// before the step
+  void find_variance(const Eigen::VectorXd& from) {
+    Eigen::VectorXd step = change_;
+    step.head(count_) = requested_values() - from;
+    std::vector<InformationPart> parts;
+    for (const Eigen::MatrixXd& products : parts_) parts.push_back(part_of_rows(products, step));
+    variance_ = variance_factor(parts, posterior_, count_, variance_);
   }
 
   /// Sets coefficients beyond a bound to the bound. The others get their best values with the bound held.
@@ -410,6 +441,8 @@ class GpsSolver {
   }
 
   void add_notes(GpsFit& fit) const {
+    const std::string disagreement = disagreement_of_gps(variance_);
+    if (!disagreement.empty()) fit.warnings.push_back(disagreement);
     const std::string_view manoeuvres =
         std::any_of(flights_.begin(), flights_.end(),
                     [](const FitFlights* each) { return gps_kind(each->task().reference) == GpsKind::wind; })
@@ -457,6 +490,8 @@ class GpsSolver {
   Eigen::VectorXd right_{};
   Eigen::MatrixXd by_fixed_{};               // products of these columns with those of fixed coefficients
   std::vector<Eigen::MatrixXd> products_{};  // one per block
+  std::vector<Eigen::MatrixXd> parts_{};     // products of halves of flights and of references
+  double variance_ = 1.0;                    // of the rows of GPS, by which their products are divided
   Eigen::MatrixXd defects_{};
   std::size_t samples_ = 0;
   Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long

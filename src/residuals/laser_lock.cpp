@@ -17,7 +17,7 @@ constexpr double lock_departure = 6.0;  // robust standard deviations
 constexpr double min_deviation = 0.1;   // m/s
 constexpr double by_angles = 0.03;      // relative airspeed: a static defect of 6 % of q
 constexpr double scale_of_cauchy = 2.385;
-constexpr int rounds = 20;
+constexpr int max_rounds = 20;
 constexpr double min_eigenvalue = 1e-9;
 constexpr std::size_t fewest = 30;
 constexpr std::size_t beside = 5;  // samples on either side
@@ -25,7 +25,7 @@ constexpr std::size_t beside = 5;  // samples on either side
 /// Deviation of the laser from the factor of the majority of samples, m/s.
 std::vector<double> departures(const Eigen::MatrixXd& columns, const Eigen::VectorXd& beam) {
   Eigen::VectorXd departure = beam - columns.col(0);
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const double scale =
         scale_of_cauchy *
         std::max(robust_standard_deviation({departure.begin(), departure.end()}), min_deviation);

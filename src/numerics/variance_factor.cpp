@@ -1,0 +1,35 @@
+#include "numerics/variance_factor.hpp"
+
+#include <algorithm>
+
+#include "numerics/decompositions.hpp"
+
+namespace pcor::internal {
+
+InformationPart part_of_rows(const Eigen::MatrixXd& products, const Eigen::VectorXd& solution) {
+  const Eigen::Index count = solution.size();
+  const Eigen::MatrixXd information = products.topLeftCorner(count, count);
+  return {information, products.col(count).head(count) - information * solution};
+}
+
+double variance_factor(const std::vector<InformationPart>& parts, const Eigen::MatrixXd& covariance,
+                       Eigen::Index count, double before) {
+  double chi2 = 4.0;
+  double freedom = 4.0;
+  const Eigen::MatrixXd to_changes = covariance.topRows(count);
+  const Eigen::MatrixXd weight = information_inverse(covariance.topLeftCorner(count, count));
+  for (const auto& [information, score] : parts) {
+    const Eigen::VectorXd change = to_changes * score;
+    const Eigen::MatrixXd expected =
+        weight * to_changes * (information - information * covariance * information) * to_changes.transpose();
+    // The sum of squares is that of chi2 with these moments (Satterthwaite).
+    const double mean = expected.trace();
+    const double half_variance = (expected * expected).trace();
+    if (!(mean > 0.0) || !(half_variance > 0.0)) continue;
+    chi2 += before * change.dot(weight * change) * mean / half_variance;
+    freedom += mean * mean / half_variance;
+  }
+  return std::max(1.0, chi2 / freedom);
+}
+
+}  // namespace pcor::internal
