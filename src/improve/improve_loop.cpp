@@ -421,7 +421,7 @@ class ForwardSelection {
     for (const Finding& finding : now.findings) {
       if (finding.may_be_of_reference()) {
         return stop(StopReason::reference_system,
-                    fmt::format("{} {} of the reference system, so the model is unchanged (--trust-reference "
+                    fmt::format("{} {} of the reference system, so it is not added (--trust-reference "
                                 "assumes that this system is right){}{}",
                                 finding.id(), finding.may_be_of_model() ? "may be an error" : "is an error",
                                 finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence));

@@ -98,7 +98,8 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
   return motion;
 }
 
-/// Reads recorded flaps, otherwise infers them from the lift.
+/// Reads recorded flaps, otherwise infers them from the lift, with records down to the usual minimum
+/// airspeed: the first records of an approach show the flaps of the later ones.
 void read_flaps(const Flight& flight, const ModelDefinition& model, double min_airspeed,
                 FlightSamples& samples) {
   RecordedSeries recorded = read_role(flight, model, Quantity::flaps);
@@ -112,8 +113,9 @@ void read_flaps(const Flight& flight, const ModelDefinition& model, double min_a
     attack = samples.motion.attack;
   else
     std::transform(attack.begin(), attack.end(), qcr.begin(), attack.begin(), std::divides<>());
+  const double min_inferred = std::min(min_airspeed, MaskOptions().min_airspeed);
   const std::optional<FlapsByLift> lift =
-      attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, min_airspeed);
+      attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, min_inferred);
   if (!lift) {
     samples.notes.emplace_back(
         "exclude approaches with --min-airspeed or --intervals: the flap position is not recorded and could "

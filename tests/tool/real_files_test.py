@@ -352,6 +352,15 @@ class Real(CaseTest):
     def test_gotex(self):
         self.corrects("GOTEX-rf06-C130-2004.nc")
 
+    def test_higher_minimum_airspeed_adds_no_sample(self):
+        """Flaps are inferred from slow records too."""
+        flight, samples = FLIGHTS / "GOTEX-rf06-C130-2004.nc", []
+        for airspeed in (60, 70, 80):
+            self.run_tool("compare", flight, "-m", "c130-psfd-qcf-2003", "--reference", "static:c130-psfrd-2003",
+                          "--min-airspeed", airspeed, "--json", "c.json")
+            samples.append(json.loads((self.path / "c.json").read_text())["models"][0]["samples"])
+        self.assertEqual(samples, sorted(samples, reverse=True))
+
     def test_gotex_lacks_attack(self):
         """NCAR added this term to equation 18 in 2016; a surface computed with numpy reaches 0.15 hPa on held-out
         samples."""
