@@ -103,11 +103,6 @@ bool is_in(std::size_t value, const std::vector<std::size_t>& set) {
 
 }  // namespace
 
-std::vector<std::size_t> set_with(std::vector<std::size_t> set, std::size_t group) {
-  set.push_back(group);
-  return set;
-}
-
 std::vector<std::size_t> set_without(std::vector<std::size_t> set, std::size_t group) {
   set.erase(std::remove(set.begin(), set.end(), group), set.end());
   return set;

@@ -37,7 +37,10 @@ struct ColumnGroup {
 };
 
 /// A set of groups with one more, and without one of them.
-std::vector<std::size_t> set_with(std::vector<std::size_t> set, std::size_t group);
+inline std::vector<std::size_t> set_with(std::vector<std::size_t> set, std::size_t group) {
+  set.push_back(group);
+  return set;
+}
 std::vector<std::size_t> set_without(std::vector<std::size_t> set, std::size_t group);
 
 /// Columns of a group among those of base and candidates.

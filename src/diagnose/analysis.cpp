@@ -92,18 +92,18 @@ void Analysis::find_gps_variance() {
   options.seed = random_seed;
   options.references = binned_.reference;
   for (int round = 0; round < max_rounds_of_variance; ++round) {
-    const double before = std::exchange(gps_variance_, gps_variance_with(result_.chosen));
-    if (std::max(before, gps_variance_) < notable * std::min(before, gps_variance_)) break;
+    const double variance = gps_variance_with(result_.chosen);
+    if (std::max(variance, gps_variance_) < notable * std::min(variance, gps_variance_)) break;
+    gps_variance_ = variance;
+    coefficients_ = coefficients(result_.chosen);
     find_search(result_.chosen);
     result_ = search_->run(options);
   }
-  coefficients_ = coefficients(result_.chosen);
 }
 
-double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) {
+double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> columns = indices_of(chosen);
   const Eigen::Index tested = as_index(columns.size());
-  uncertainty_ = find_shape_uncertainty(chosen);
   WhitenedSystem system = whiten(binned_.columns, true);
   take_out_common_noise(system);
   for (Eigen::Index k = binned_.columns.front().cols(); k < system.columns(); ++k) columns.push_back(k);

@@ -125,7 +125,8 @@ class Analysis {
   double search_from(const Eigen::VectorXd& start, bool generous);
   /// Finds the factor of the variance of GPS, and repeats the search with it.
   void find_gps_variance();
-  double gps_variance_with(const std::vector<std::size_t>& chosen);
+  /// Factor beside base and groups, from halves of flights and from references.
+  double gps_variance_with(const std::vector<std::size_t>& chosen) const;
   void replace_outliers(const Eigen::VectorXd& coefficients);
   /// @param is_rough a first estimate without slow drift
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients, bool is_rough);

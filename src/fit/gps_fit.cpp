@@ -491,7 +491,7 @@ class GpsSolver {
   Eigen::MatrixXd by_fixed_{};               // products of these columns with those of fixed coefficients
   std::vector<Eigen::MatrixXd> products_{};  // one per block
   std::vector<Eigen::MatrixXd> parts_{};     // products of halves of flights and of references
-  double variance_ = 1.0;                    // of the rows of GPS, by which their products are divided
+  double variance_ = 1.0;                    // factor of the variance of GPS; its products are divided by it
   Eigen::MatrixXd defects_{};
   std::size_t samples_ = 0;
   Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long
