@@ -104,10 +104,9 @@ std::string disagreement_of_gps(double variance) {
   const double factor = std::sqrt(variance);
   if (factor < notable) return "";
   return fmt::format(
-      "the halves of the flights, or wind and height, disagree {:.1f} times more than their "
-      "noise explains, so the errors by GPS are {:.1f} times larger; give a laser or a second "
-      "system as a further reference, or exclude changes of the weather (--intervals)",
-      factor, factor);
+      "exclude changes of the weather (--intervals) or give a further reference: halves of the flights, or "
+      "references, disagree {:.1f} times more than the noise of GPS explains; the stated errors contain this",
+      factor);
 }
 
 std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSamples& samples,

@@ -80,7 +80,7 @@ struct WhitenedSystem {
   std::vector<std::vector<Eigen::Index>> bin{};    ///< per flight: bin of each row; empty: rows are bins
   std::vector<std::vector<Eigen::Index>> block{};  ///< per flight: index of the minute of each bin
   Eigen::Index blocks = 0;                         ///< minutes of all flights
-  std::size_t row_count = 0;                       ///< total of all flights
+  std::size_t row_count = 0;                       ///< independent rows of all flights
   Eigen::MatrixXd information{};                   ///< columns and residual with columns and residual
   Eigen::MatrixXd plain{};                         ///< the same as if the noise had no slow parts
 

@@ -104,7 +104,7 @@ void Analysis::find_gps_variance() {
 double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> columns = indices_of(chosen);
   const Eigen::Index tested = as_index(columns.size());
-  WhitenedSystem system = whiten(binned_.columns, true);
+  WhitenedSystem system = whiten_all();
   take_out_common_noise(system);
   for (Eigen::Index k = binned_.columns.front().cols(); k < system.columns(); ++k) columns.push_back(k);
   const Eigen::Index count = as_index(columns.size());
@@ -119,7 +119,7 @@ double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) const
   const auto halves = share_.of_each_flight<Halves>([&](std::size_t f) {
     Halves own;
     own.fill(Eigen::MatrixXd::Zero(count + 1, count + 1));
-    if (!flight(f).is_by_gps || binned_.bins[f].size() == 0) return own;
+    if (flight(f).gps.rows.size() == 0) return own;
     const std::vector<double>& time = binned_.bins[f].time();
     const double middle = 0.5 * (time.front() + time.back());
     const Eigen::MatrixXd rows = system.rows[f](Eigen::all, columns);
@@ -133,7 +133,10 @@ double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) const
   std::map<std::size_t, Eigen::MatrixXd> references;
   for (std::size_t f = 0; f < halves.size(); ++f) {
     if (!flight(f).is_by_gps) continue;
-    for (const Eigen::MatrixXd& half : halves[f]) parts.push_back(part_of_rows(half, estimate));
+    // A half that has all rows disagrees with the prior only.
+    if (!halves[f][0].isZero(0.0) && !halves[f][1].isZero(0.0)) {
+      for (const Eigen::MatrixXd& half : halves[f]) parts.push_back(part_of_rows(half, estimate));
+    }
     const auto [sum, is_new] = references.try_emplace(flight(f).reference, halves[f][0] + halves[f][1]);
     if (!is_new) sum->second += halves[f][0] + halves[f][1];
   }
@@ -285,7 +288,14 @@ std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<
   return shape_uncertainty(share_, flights, binned_, effects);
 }
 
-WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns, bool of_candidates) const {
+WhitenedSystem Analysis::whiten_all() const {
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(binned_.columns.front().cols()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  return whiten(binned_.columns, all);
+}
+
+WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns,
+                                const std::vector<Eigen::Index>& of_gps) const {
   std::vector<Eigen::MatrixXd> all;
   std::vector<WhiteFlight> white(columns.size());
   for (std::size_t f = 0; f < columns.size(); ++f) {
@@ -294,9 +304,8 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns, boo
     both.leftCols(own) << columns[f], uncertainty_[f];
     const GpsSystem& gps = flight(f).gps;
     if (gps.rows.size() == 0) continue;
-    const Eigen::Index taken = of_candidates ? columns[f].cols() : base_;
     white[f].rows = Eigen::MatrixXd::Zero(gps.rows.rows(), own + nuisances_ + 1);
-    white[f].rows.leftCols(taken) = gps.rows.leftCols(taken).cast<double>();
+    white[f].rows.leftCols(as_index(of_gps.size())) = gps.rows(Eigen::all, of_gps).cast<double>();
     white[f].rows.rightCols(nuisances_ + 1) = gps.rows.rightCols(nuisances_ + 1).cast<double>();
     white[f].rows /= std::sqrt(gps_variance_);
     const std::vector<std::size_t>& records = binned_.bins[f].records();
@@ -308,16 +317,16 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns, boo
   }
   WhitenedSystem system = find_scores(share_, binned_.bins, all, binned_.residuals, noise_, white);
   if (nuisances_ > 0) {
-    const auto of_gps = share_.sum_of_each_flight<double>(
+    const auto rows = share_.sum_of_each_flight<double>(
         [&white](std::size_t f) { return static_cast<double>(white[f].rows.rows()); });
-    system.row_count -= static_cast<std::size_t>(of_gps * (1.0 - 1.0 / gps_variance_));
+    system.row_count -= static_cast<std::size_t>(rows * (1.0 - 1.0 / gps_variance_));
   }
   return system;
 }
 
 void Analysis::find_search(const std::vector<std::size_t>& chosen) {
   uncertainty_ = find_shape_uncertainty(chosen);
-  scores_ = std::make_unique<WhitenedSystem>(whiten(binned_.columns, true));
+  scores_ = std::make_unique<WhitenedSystem>(whiten_all());
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (!share_.is_local(f)) continue;
@@ -344,15 +353,16 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   sum_up(scores);
 }
 
-WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more, bool keeps_shapes) const {
+WhitenedSystem Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more,
+                                     const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
     columns.push_back(side_by_side(binned_.columns[f].leftCols(base_), more[f]));
   }
-  WhitenedSystem scores = whiten(columns, false);
+  WhitenedSystem scores = whiten(columns, indices_of(chosen));
   take_out_common_noise(scores);
   const Eigen::Index of_added = shape_columns * as_index(added_.size());
-  marginalize(scores, (keeps_shapes ? of_added : uncertainty_.front().cols()) + nuisances_);
+  marginalize(scores, (chosen.empty() ? uncertainty_.front().cols() : of_added) + nuisances_);
   return scores;
 }
 
@@ -364,7 +374,7 @@ Competition Analysis::competition(const std::vector<std::size_t>& chosen,
   for (std::size_t f = 0; f < rivals.size(); ++f)
     more.push_back(side_by_side(binned_.columns[f](Eigen::all, effects), rivals[f]));
   Competition result;
-  result.system = scores_with(more, true);
+  result.system = scores_with(more, chosen);
   const Eigen::Index before = binned_.columns.front().cols() - base_;  // first column of the shapes
   Eigen::Index first = 0;
   for (const std::size_t group : chosen) {
@@ -422,7 +432,7 @@ Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) 
     const Eigen::MatrixXd rows = rows_of_refit(f, indices);
     PartialSums own(1, rows.cols());
     own.products[0] = rows.transpose() * rows;
-    own.counts[0] = static_cast<double>(rows.rows());
+    own.counts[0] = static_cast<double>(rows.rows()) / (flight(f).is_by_gps ? gps_variance_ : 1.0);
     return own;
   });
   return coefficients(groups, solution(sums.products[0], sums.counts[0], groups));
@@ -446,6 +456,9 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
       own.add(part, white[f].row(i).transpose());
       // A refit weighs each reference by its noise.
       if (flight(f).reference == 0) own.add(part + held_out_parts, all.row(i).transpose());
+    }
+    if (flight(f).is_by_gps) {
+      for (double& count : own.counts) count /= gps_variance_;
     }
     return own;
   });

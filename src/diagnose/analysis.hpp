@@ -68,9 +68,10 @@ class Analysis {
   const EffectSearch& search() const { return *search_; }
   const WhitenedSystem& scores() const { return *scores_; }
   /// Scores of the base followed by other columns instead of the candidates'. @param more in bins, of each
-  /// flight against each reference @param keeps_shapes the uncertain shapes of the chosen effects stay
-  /// columns
-  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more, bool keeps_shapes = false) const;
+  /// flight against each reference @param chosen effects whose columns are the first of these; their
+  /// uncertain shapes stay columns
+  WhitenedSystem scores_with(const std::vector<Eigen::MatrixXd>& more,
+                             const std::vector<std::size_t>& chosen = {}) const;
   /// Scores of the base, the chosen effects with their uncertain shapes, and rivals. @param rivals in bins,
   /// of each flight against each reference: one column for each rival and reference
   Competition competition(const std::vector<std::size_t>& chosen,
@@ -125,7 +126,7 @@ class Analysis {
   double search_from(const Eigen::VectorXd& start, bool generous);
   /// Finds the factor of the variance of GPS, and repeats the search with it.
   void find_gps_variance();
-  /// Factor beside base and groups, from halves of flights and from references.
+  /// Factor with base and groups, from halves of flights and from references.
   double gps_variance_with(const std::vector<std::size_t>& chosen) const;
   void replace_outliers(const Eigen::VectorXd& coefficients);
   /// @param is_rough a first estimate without slow drift
@@ -140,9 +141,11 @@ class Analysis {
   /// Columns of the uncertain shapes of the chosen effects of the flow: groups first, then the added effects.
   std::vector<Eigen::MatrixXd> find_shape_uncertainty(const std::vector<std::size_t>& chosen);
   /// Whitens the columns, followed by those of uncertain shapes and the nuisances of GPS.
-  /// @param of_candidates the columns are those of base and candidates; otherwise flights against GPS have
-  /// those of the base alone
-  WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns, bool of_candidates) const;
+  /// @param of_gps which of all columns the first ones are; flights against GPS have no others
+  WhitenedSystem whiten(const std::vector<Eigen::MatrixXd>& columns,
+                        const std::vector<Eigen::Index>& of_gps) const;
+  /// Whitens the columns of base and candidates.
+  WhitenedSystem whiten_all() const;
   /// Removes the common noise from the rows against further references.
   void take_out_common_noise(WhitenedSystem& scores) const;
 

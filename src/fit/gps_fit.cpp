@@ -219,7 +219,11 @@ class GpsSolver {
           halves[2 * reference + (block > middle ? 1 : 0)] += own_products;
         }
       }
-      parts_.insert(parts_.end(), halves.begin(), halves.end());
+      for (std::size_t r = 0; r < flights_.size(); ++r) {
+        // A half that has all rows disagrees with the prior only.
+        if (halves[2 * r].isZero(0.0) || halves[2 * r + 1].isZero(0.0)) continue;
+        parts_.insert(parts_.end(), {halves[2 * r], halves[2 * r + 1]});
+      }
       const Eigen::MatrixXd left = without.transpose() * sum.leftCols(all() + 1) * without;
       matrix_ += left.topLeftCorner(size, size);
       right_ += left.col(size).head(size);
@@ -292,6 +296,7 @@ class GpsSolver {
     Eigen::VectorXd from = Eigen::VectorXd::Zero(shared());
     from.head(count_) = requested_values() - before_;
     change_ = posterior_ * (right_ + matrix_ * from);
+    optimum_ = change_;
     change_.head(count_) = level_held() * change_.head(count_);
     keep_bounds();
     solution_.values(requested_) = before_ + change_.head(count_);
@@ -301,8 +306,8 @@ class GpsSolver {
   /// Finds the factor of the variance of GPS, after a step. @param from values of the requested coefficients
   /// before the step
   void find_variance(const Eigen::VectorXd& from) {
-    Eigen::VectorXd step = change_;
-    step.head(count_) = requested_values() - from;
+    Eigen::VectorXd step = optimum_;
+    step.head(count_) -= from - before_;
     std::vector<InformationPart> parts;
     for (const Eigen::MatrixXd& products : parts_) parts.push_back(part_of_rows(products, step));
     variance_ = variance_factor(parts, posterior_, count_, variance_);
@@ -500,8 +505,9 @@ class GpsSolver {
   Eigen::MatrixXd prior_{};      // covariance of coefficients and shared nuisances before the flights
   Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
   std::vector<bool> at_bound_{};
-  Eigen::VectorXd change_{};  // changes of coefficients; values of nuisances
-  double determined_ = 0.0;   // error of delta-p by noise, without fixed directions and coefficients, hPa
+  Eigen::VectorXd change_{};   // changes of coefficients; values of nuisances
+  Eigen::VectorXd optimum_{};  // the same, free of bounds and of the level that is kept
+  double determined_ = 0.0;    // error of delta-p by noise, without fixed directions and coefficients, hPa
 };
 
 }  // namespace

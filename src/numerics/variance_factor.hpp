@@ -20,7 +20,9 @@ InformationPart part_of_rows(const Eigen::MatrixXd& products, const Eigen::Vecto
 /// by a part has the covariance S (M - M S M) S.
 ///
 /// The factor is the mean of chi2 per degree of freedom of these changes, together with a prior: 1 with the
-/// weight of four degrees of freedom. It is 1 or more: agreement does not prove a smaller noise.
+/// weight of four degrees of freedom, or of fewer if parts repeat each other, as two halves do. It is 1 or
+/// more: agreement does not prove a smaller noise. S contains the prior of the coefficients. If nuisances of
+/// a flight were eliminated from its rows, the factor is too small, since part of the scatter went with them.
 ///
 /// @param parts M and s of each part @param covariance S, of the fit to all parts
 /// @param count the first coefficients, whose changes are tested; the others are nuisances

@@ -514,6 +514,7 @@ TEST(Diagnose, HeightsShowThermometerBias) {
   ASSERT_THAT(diagnosis.findings, SizeIs(1));
   const Finding& finding = diagnosis.findings[0];
   EXPECT_THAT(family_of(finding), Contains("temp-offset"));
+  // Errors that one flight with a laser does not separate: thermometer, recovery, beam, dynamic pressure.
   EXPECT_THAT(family_of(finding), SizeIs(testing::Le(4U)));
   if (finding.effect.id != "temp-offset") return;
   // Isobars that rise along the track look like a few tenths of a kelvin.
