@@ -413,8 +413,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
       sum_over_neighbours(residuals, evaluations, system.first_location, used, needed, columns.candidates);
   }
   complete(set, systems.size() > 1, used, columns.candidates);
-  if (kind)
-    put_gps(*kind, set, model_system, rows, columns);
+  if (kind) put_gps(*kind, set, model_system, rows, columns);
   for (const Quantity quantity : {Quantity::corrected_mach, Quantity::ambient_temperature})
     columns.quantities.emplace_back(quantity, residuals.quantity(quantity, start));
   columns.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, start);
