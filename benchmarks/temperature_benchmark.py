@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the run time of `pcor temperature`, with reading, on simulated climbs and descents at 1 Hz, on two cores.
 
-    benchmarks/temperature_benchmark [BUILD_FOLDER]        default build/benchmark
+    benchmarks/temperature_benchmark.py [BUILD_FOLDER]        default build/benchmark
 
 Each flight repeats the legs of data/scenarios/c130-climbs.toml with a different seed. The flights are fitted as recorded,
 and as written by `pcor process --hydrostatic` (--archived).
@@ -19,9 +19,9 @@ import random
 import subprocess
 import sys
 import tempfile
-import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from measure import ROOT, Targets, run
+
 SCENARIO = ROOT / "data/scenarios/c130-climbs.toml"
 MODEL = ROOT / "data/models/c130-psfd-eq18.toml"
 CORES = 2
@@ -35,17 +35,6 @@ AVAILABLE = {2.5: 20, 5.0: 40, 10.0: 20}  # hours: number of simulated flights
 
 MAX_SECONDS = 10.0  # for 20 flights of 5 hours
 MAX_EXPONENT = 1.2  # exponent of time as a function of the number of samples; short flights may need more iterations
-
-
-def run(command):
-    """Wall and processor seconds of a command."""
-    begin = time.monotonic()
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(child.pid, 0)
-    seconds = time.monotonic() - begin
-    if status != 0:
-        sys.exit(f"failed: {' '.join(map(str, command))}")
-    return seconds, usage.ru_utime + usage.ru_stime
 
 
 def scenario(hours):
@@ -88,7 +77,7 @@ def mean(values):
 
 
 def measure(tool, folder, kind, flights, sizes):
-    """Wall and processor seconds of all sets by size; a size is (hours, number of flights)."""
+    """Usage of all sets by size; a size is (hours, number of flights)."""
     draw = random.Random(1)
     found = {size: [] for size in sizes}
     for _ in range(SETS):
@@ -99,20 +88,13 @@ def measure(tool, folder, kind, flights, sizes):
     return found
 
 
-class Targets:
-    missed = False
-
-    def check(self, text, value, met, target):
-        self.missed |= not met
-        print(f"  {text:<46} {value:8.3g}, target at most {target}: {'met' if met else 'missed'}")
-
-
 def show(found, samples, targets):
     """Prints the times of the sizes and checks the exponent."""
     print(f"  {'':<24}{'samples':>9}{'wall s (min, max)':>24}{'processor s':>13}{'s / 1e6':>13}{'ratio':>7}")
     before = None
     for (hours, number), times in found.items():
-        wall, processor = zip(*times)
+        wall = [each.wall for each in times]
+        processor = [each.processor for each in times]
         count = number * samples[hours]
         spread = f"{mean(wall):.2f} ({min(wall):.2f}, {max(wall):.2f})"
         ratio = f"{mean(processor) / before:7.2f}" if before else ""
@@ -120,9 +102,9 @@ def show(found, samples, targets):
               f"{1e6 * mean(processor) / count:13.2f}{ratio}")
         before = mean(processor)
     counts = [number * samples[hours] for hours, number in found]
-    means = [mean([processor for _, processor in times]) for times in found.values()]
+    means = [mean([each.processor for each in times]) for times in found.values()]
     exponent = math.log(means[-1] / means[0]) / math.log(counts[-1] / counts[0])
-    targets.check("exponent of processor time", exponent, exponent <= MAX_EXPONENT, MAX_EXPONENT)
+    targets.check("exponent of processor time", exponent, exponent <= MAX_EXPONENT, f"at most {MAX_EXPONENT}")
 
 
 def main():
@@ -140,8 +122,9 @@ def main():
             found = measure(tool, folder, kind, flights, sorted({*by_number, *by_length}))
             print(f"\n{kind}, by number of flights")
             show({size: found[size] for size in by_number}, samples, targets)
-            slowest = max(processor for _, processor in found[by_number[-1]])
-            targets.check("processor seconds of the slowest set of 20", slowest, slowest <= MAX_SECONDS, MAX_SECONDS)
+            slowest = max(each.processor for each in found[by_number[-1]])
+            targets.check("processor seconds of the slowest set of 20", slowest, slowest <= MAX_SECONDS,
+                          f"at most {MAX_SECONDS}")
             print(f"\n{kind}, by length of flight")
             show({size: found[size] for size in by_length}, samples, targets)
     return 1 if targets.missed else 0
