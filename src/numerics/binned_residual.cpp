@@ -18,15 +18,23 @@ double used_records(const std::vector<double>& residual) {
       std::count_if(residual.begin(), residual.end(), [](double r) { return !std::isnan(r); }));
 }
 
-double width_of_bins(const std::vector<double>& residual, double step) {
-  return std::min(Binning::usual_width, used_records(residual) * step / usual_bins);
+Binning bins_of(const std::vector<double>& residual, const std::vector<double>& time, double step,
+                double max_bins) {
+  constexpr double min_kept = 0.95;  // share of the records in bins of the usual width
+  const double length = used_records(residual) * step;
+  Binning bins(residual, time, step, std::min(Binning::usual_width, length / usual_bins));
+  const double width = std::min(length / max_bins, Binning::max_width);
+  if (width <= bins.width()) return bins;
+  Binning wide(residual, time, step, width);
+  const auto records = [](const Binning& of) { return static_cast<double>(of.records().size()); };
+  return records(wide) < min_kept * records(bins) ? bins : wide;
 }
 
 }  // namespace
 
 BinnedResidual::BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time,
-                               double step)
-    : bins_(residual, time, step, width_of_bins(residual, step)) {
+                               double step, double max_bins)
+    : bins_(bins_of(residual, time, step, max_bins)) {
   means_ = bins_.means(residual);
   const std::vector<std::size_t>& records = bins_.records();
   variance_ = Eigen::VectorXd::Zero(means_.size());

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "numerics/binning.hpp"
@@ -14,7 +15,10 @@ class BinnedResidual {
  public:
   BinnedResidual() = default;  // empty
   /// @param residual one value for each record, NaN where not used; @param time s; @param step s
-  BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time, double step);
+  /// @param max_bins bins are widened up to `Binning::max_width` until there are about this many, unless
+  /// records are lost: enough for sums over whole flights
+  BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time, double step,
+                 double max_bins = std::numeric_limits<double>::infinity());
 
   const Binning& bins() const { return bins_; }
   /// The residual in bins.

@@ -8,15 +8,15 @@ namespace pcor::internal {
 Binning::Binning(const std::vector<double>& residual, const std::vector<double>& time, double step,
                  double width) {
   if (time.empty()) return;
-  const double bin_width = std::max(1.0, std::round(width / step)) * step;
-  const double fewest = 0.5 * bin_width / step;
+  width_ = std::max(1.0, std::round(width / step)) * step;
+  const double fewest = 0.5 * width_ / step;
   std::vector<double> counts;
   long before = -2;  // number of the cell of the last bin
   for (std::size_t i = 0; i < residual.size();) {
-    const auto cell = static_cast<long>(std::floor((time[i] - time.front()) / bin_width));
+    const auto cell = static_cast<long>(std::floor((time[i] - time.front()) / width_));
     std::vector<std::size_t> members;
     double middle = 0.0;
-    for (; i < residual.size() && static_cast<long>(std::floor((time[i] - time.front()) / bin_width)) == cell;
+    for (; i < residual.size() && static_cast<long>(std::floor((time[i] - time.front()) / width_)) == cell;
          ++i) {
       if (std::isnan(residual[i])) continue;
       members.push_back(i);

@@ -18,10 +18,13 @@ void serialize(Archive& archive, pcor::Segment& segment) {
 namespace pcor::internal {
 
 /// Means over about four seconds: long enough that the noise of sensors is not what whitening amplifies,
-/// short enough for every manoeuvre. Longer ones for residuals that are not of one sample alone.
+/// short enough for every manoeuvre. Longer ones for residuals that are not of one sample alone, and for sums
+/// over long flights.
 class Binning {
  public:
   static constexpr double usual_width = 4.0;  ///< s
+  /// Maximum width for sums, s: twenty bins in `local_noise_time` determine the level of the noise there.
+  static constexpr double max_width = 15.0;
 
   Binning() = default;  // empty
   /// @param residual one value for each record, NaN where not used; @param time s; @param step s
@@ -30,6 +33,8 @@ class Binning {
           double width = usual_width);
 
   std::size_t size() const { return time_.size(); }
+  /// Time from bin to bin, s.
+  double width() const { return width_; }
   /// Middles of the bins, s.
   const std::vector<double>& time() const { return time_; }
   /// Bins that follow one another without a gap.
@@ -53,10 +58,11 @@ class Binning {
   /// The records are not archived: columns that are already bin means do not use them.
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(time_, segments_);
+    archive(width_, time_, segments_);
   }
 
  private:
+  double width_ = usual_width;
   std::vector<std::size_t> record_;
   std::vector<Eigen::Index> bin_;
   Eigen::VectorXd count_;

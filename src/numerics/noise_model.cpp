@@ -16,13 +16,11 @@
 namespace pcor::internal {
 namespace {
 
-/// Maximum order of the autoregression in bins of the usual width: the drift components describe a memory of
-/// 50 s and more.
-constexpr auto max_order = static_cast<std::size_t>(slow_times.front() / Binning::usual_width);
 constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t max_shapes = 48;
 constexpr double min_period = 300.0;  // s
 constexpr std::size_t min_innovations = 20;
+constexpr std::size_t min_flights = 4, max_bins = 50000;  // flights that determine the noise, and their bins
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;
 
@@ -76,6 +74,13 @@ Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residu
 Eigen::VectorXd at_common_mean(const Eigen::VectorXd& residual, const NoiseModel& noise) {
   if (!noise.mean || residual.size() == 0) return residual;
   return residual.array() - (residual.mean() - *noise.mean);
+}
+
+/// Maximum order of the autoregression: the drift components describe a memory of 50 s and more.
+std::size_t max_order(const std::vector<Binning>& bins) {
+  double width = Binning::usual_width;
+  for (const Binning& flight : bins) width = std::max(width, flight.width());
+  return std::max(static_cast<std::size_t>(slow_times.front() / width), std::size_t{1});
 }
 
 std::vector<double> concatenated(const std::vector<Eigen::VectorXd>& flights) {
@@ -259,7 +264,7 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
   for (int round = 0; round < rounds; ++round) {
     std::vector<Eigen::VectorXd> scaled;
     for (std::size_t f = 0; f < bins.size(); ++f) scaled.emplace_back(fast[f].cwiseQuotient(noise.level[f]));
-    noise.coefficients = autoregression(concatenated(scaled), segments, max_order);
+    noise.coefficients = autoregression(concatenated(scaled), segments, max_order(bins));
     std::vector<Eigen::VectorXd> innovations;
     for (std::size_t f = 0; f < bins.size(); ++f)
       innovations.push_back(at_one_level(fast[f], bins[f], noise));
@@ -367,20 +372,24 @@ std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& fligh
   std::iota(all.begin(), all.end(), std::size_t{0});
   all.erase(std::remove_if(all.begin(), all.end(), [&](std::size_t f) { return flights[f].bins == 0; }),
             all.end());
-  if (all.empty() && !flights.empty()) return {0};
+  if (all.empty()) return flights.empty() ? all : std::vector<std::size_t>{0};
+  const auto sum_of_bins = [&] {
+    return std::accumulate(all.begin(), all.end(), std::size_t{0},
+                           [&](std::size_t sum, std::size_t f) { return sum + flights[f].bins; });
+  };
+  if (all.size() > maximum || (all.size() > min_flights && sum_of_bins() > max_bins)) {
+    const std::size_t bins = sum_of_bins();
+    const std::size_t count = all.size();
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](std::size_t f) { return 4 * flights[f].bins * count < bins; }),
+              all.end());
+    maximum = std::min(maximum, std::max(min_flights, max_bins * all.size() / sum_of_bins()));
+  }
   if (all.size() <= maximum) return all;
-  const std::size_t bins =
-      std::accumulate(flights.begin(), flights.end(), std::size_t{0},
-                      [](std::size_t sum, const NoiseFlight& flight) { return sum + flight.bins; });
-  const std::size_t count = all.size();
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [&](std::size_t f) { return 4 * flights[f].bins * count < bins; }),
-            all.end());
   std::stable_sort(all.begin(), all.end(),
                    [&](std::size_t a, std::size_t b) { return flights[a].begin < flights[b].begin; });
-  const std::size_t every = (all.size() + maximum - 1) / maximum;
   std::vector<std::size_t> chosen;
-  for (std::size_t k = 0; k < all.size(); k += every) chosen.push_back(all[k]);
+  for (std::size_t k = 0; k < maximum; ++k) chosen.push_back(all[(2 * k + 1) * all.size() / (2 * maximum)]);
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }

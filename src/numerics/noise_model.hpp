@@ -49,10 +49,10 @@ struct NoiseFlight {
 };
 
 /// Numbers, in increasing order, of the flights that determine the common part of the noise: all flights with
-/// bins, up to `maximum`. If there are more, at most `maximum`, spread over the time in which they were
-/// flown, among the flights with at least a quarter of the mean number of bins, which have three quarters of
-/// all bins: the choice does not depend on the order of the flights. If no flight has a bin, the first
-/// flight.
+/// bins, if they are at most `maximum` flights with 50,000 bins (55 hours). Otherwise as many flights as
+/// these limits allow, but at least four, spread over the time in which they were flown, among the flights
+/// with at least a quarter of the mean number of bins, which have three quarters of all bins. The choice does
+/// not depend on the order of the flights. If no flight has a bin, the first flight.
 std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& flights, std::size_t maximum = 16);
 
 /// Estimates autoregression and level from residuals from which all effects are removed. Slow drift and, if

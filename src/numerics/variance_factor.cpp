@@ -24,10 +24,10 @@ double variance_factor(const std::vector<InformationPart>& parts, const Eigen::M
         weight * to_changes * (information - information * covariance * information) * to_changes.transpose();
     // The sum of squares is that of chi2 with these moments (Satterthwaite).
     const double mean = expected.trace();
-    const double half_variance = (expected * expected).trace();
-    if (!(mean > 0.0) || !(half_variance > 0.0)) continue;
-    chi2 += before * change.dot(weight * change) * mean / half_variance;
-    freedom += mean * mean / half_variance;
+    const double squares = (expected * expected).trace();  // half of the variance
+    if (!(mean > 0.0) || !(squares > 0.0)) continue;
+    chi2 += before * change.dot(weight * change) * mean / squares;
+    freedom += mean * mean / squares;
   }
   return std::max(1.0, chi2 / freedom);
 }

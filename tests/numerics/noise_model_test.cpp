@@ -227,6 +227,24 @@ TEST(NoiseFlights, FewLongFlightsArePreferredToManyShortOnes) {
   EXPECT_THAT(flights_for_noise(all, 6), ::testing::ElementsAre(4, 10));
 }
 
+TEST(NoiseFlights, LongFlightsAreFewer) {
+  const auto chosen_of = [](std::size_t count, std::size_t bins, std::size_t short_flights) {
+    std::vector<NoiseFlight> all = flights(count + short_flights);
+    for (std::size_t f = 0; f < all.size(); ++f) all[f].bins = f < count ? bins : 10;
+    std::size_t sum = 0;
+    const std::vector<std::size_t> chosen = flights_for_noise(all);
+    for (const std::size_t f : chosen) sum += all[f].bins;
+    return std::pair(chosen.size(), sum);
+  };
+  EXPECT_EQ(chosen_of(16, 3000, 0), std::pair(std::size_t{16}, std::size_t{48000}));
+  EXPECT_EQ(chosen_of(16, 3200, 0), std::pair(std::size_t{15}, std::size_t{48000}));
+  EXPECT_EQ(chosen_of(6, 9000, 0), std::pair(std::size_t{5}, std::size_t{45000}));
+  EXPECT_EQ(chosen_of(10, 20000, 0), std::pair(std::size_t{4}, std::size_t{80000}));
+  EXPECT_EQ(chosen_of(3, 20000, 0), std::pair(std::size_t{3}, std::size_t{60000}));
+  EXPECT_EQ(chosen_of(16, 7200, 40), std::pair(std::size_t{6}, std::size_t{43200}));
+  EXPECT_EQ(chosen_of(17, 900, 0), std::pair(std::size_t{16}, std::size_t{14400}));
+}
+
 TEST(NoiseFlights, ChoiceIsIndependentOfFlightOrder) {
   std::vector<NoiseFlight> all = flights(50);
   std::mt19937 chance(1);
