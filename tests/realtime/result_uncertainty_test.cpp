@@ -390,6 +390,47 @@ TEST(ResultUncertainty, TaperAndMinimumKeepLawUncertainty) {
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0, 1e-12) << "the limit is not known better than the law";
 }
 
+// The errors of all coefficients at the ports are one change of delta-p.
+TEST(ResultUncertainty, CoefficientsAtThePortsAddTheirSquares) {
+  Model model = law();
+  model.policy.taper_below = 100.0;
+  ModelEffect surface{"static-surface", {}};
+  surface.surface = Surface{{{{Quantity::attack_ratio, -0.3, -0.1, 5}, {Quantity::mach, 0.2, 0.5, 4}}}};
+  for (std::size_t i = 0; i < surface.surface->parameter_count(); ++i)
+    surface.parameters.push_back(0.01 * std::sin(3.0 * static_cast<double>(i)));
+  model.effects.push_back(surface);
+  model.effects.push_back({"temp-offset", {0.1, 0.001}});
+  const Recorded recorded = everything_recorded();
+  const std::size_t count = parameter_count(model);
+  const double size = 1e-4;
+  ModelUncertainty uncertainty;
+  uncertainty.covariance.assign(count * count, 0.0);
+  std::array<double, uncertain_results.size()> squares{};
+  std::size_t position = 0;
+  for (ModelEffect& effect : model.effects) {
+    for (double& parameter : effect.parameters) {
+      uncertainty.covariance[position * (count + 1)] = size * size;
+      ++position;
+      const double value = parameter;
+      parameter = value + size;
+      const State<double> above = state_of(model, recorded);
+      parameter = value - size;
+      const State<double> below = state_of(model, recorded);
+      parameter = value;
+      for (std::size_t k = 0; k < squares.size(); ++k) {
+        const Quantity result = uncertain_results[k].result;
+        squares[k] += std::pow(0.5 * (above[result] - below[result]), 2);
+      }
+    }
+  }
+  const State<double> stated = state_of(model, recorded, uncertainty);
+  for (std::size_t k = 0; k < squares.size(); ++k) {
+    // Curvature of the results over a change of 0.1 hPa.
+    EXPECT_NEAR(stated[uncertain_results[k].uncertainty] / std::sqrt(squares[k]), 1.0, 1e-4)
+        << info_of(uncertain_results[k].result).name;
+  }
+}
+
 TEST(ResultUncertainty, IsMissingOutsideTheDomainOfTheLaw) {
   Model model = law();
   const Recorded recorded = everything_recorded();

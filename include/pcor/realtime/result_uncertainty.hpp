@@ -44,8 +44,11 @@ inline constexpr std::array<UncertainResult, 5> uncertain_results{{
 /// flow angles at a radome pressure below its noise, the uncertainty is missing, with the bit
 /// `outside_domain`.
 ///
-/// Cost: two runs of the chain for each u_i. Outside its envelope a surface is flat, and its error grows by
-/// the rms slope inside the envelope. docs/uncertainty.md lists the contributions.
+/// All u_i that change only effects at the static ports act through the sum of these effects: they are one
+/// change of this sum by its standard uncertainty. Outside its envelope a surface is flat, and its error
+/// grows by the rms slope inside the envelope. docs/uncertainty.md lists the contributions.
+///
+/// Cost: two runs of the chain for this change and for each other u_i; two sums for each u_i at the ports.
 ///
 /// If delta-p is raised to the minimum of the model, it keeps the uncertainty of the model. If it is tapered,
 /// the contributions of coefficients and inputs are tapered, too; the model's own uncertainty of delta-p is
@@ -105,26 +108,39 @@ class ResultUncertainty final : public Functor {
     const std::vector<double>& parameters = chain_.parameters();
     // The policy raises delta-p to its minimum by this amount. It is kept, so that delta-p keeps the
     // uncertainty of the law.
-    const double raised =
-        std::max(0.0, chain_.minimum_defect() - chain_.sum_at_ports(state, parameters.data()));
+    const double at_ports = chain_.sum_at_ports(state, parameters.data());
+    const double raised = std::max(0.0, chain_.minimum_defect() - at_ports);
     at_ports_ = raised;
     results_ = results();
     // The product makes the uncertainty missing if the result is missing, and outside the domain of the law.
     const double zero = chain_.is_outside_domain(state) ? missing<double>() : 0.0;
     for (std::size_t i = 0; i < variances_.size(); ++i)
       variances_[i] = zero * state[uncertain_results[i].result];
-    for (const std::vector<double>& change : root_) {
-      add([&](double sign) {
-        for (std::size_t i = 0; i < change.size(); ++i) parameters_[i] = parameters[i] + sign * change[i];
-      });
+    const auto move = [&](const std::vector<double>& change, double sign) {
+      for (std::size_t i = 0; i < change.size(); ++i) parameters_[i] = parameters[i] + sign * change[i];
+    };
+    for (const std::vector<double>& change : root_) add([&](double sign) { move(change, sign); });
+    double variance_at_ports = 0.0;
+    for (const std::vector<double>& change : root_at_ports_) {
+      move(change, 1.0);
+      const double above = chain_.sum_at_ports(state, parameters_.data());
+      move(change, -1.0);
+      const double below = chain_.sum_at_ports(state, parameters_.data());
+      const double difference = half_difference(above, at_ports, below);
+      variance_at_ports += difference * difference;
     }
+    std::copy(parameters.begin(), parameters.end(), parameters_.begin());
     for (const Noise& noise : noises_) {
       const double value = inputs_[noise.quantity];
       add([&](double sign) { inputs_[noise.quantity] = value + sign * noise.size; });
     }
     for (const FlatOutside& each : surfaces_) {
       const double error = each.slope * each.distance(state) * state[Quantity::dynamic_pressure];
-      if (error > 0.0) add([&](double sign) { at_ports_ = raised + sign * error; });
+      if (error > 0.0) variance_at_ports += error * error;
+    }
+    if (!(variance_at_ports <= 0.0)) {
+      const double error = std::sqrt(variance_at_ports);
+      add([&](double sign) { at_ports_ = raised + sign * error; });
     }
     const double remaining =
         std::hypot(static_defect_, static_defect_ratio_ * state[Quantity::static_pressure]);
@@ -165,10 +181,11 @@ class ResultUncertainty final : public Functor {
                     const ModelUncertainty& uncertainty, const LookAhead* look_ahead)
       : Functor(std::move(inputs), writes()),
         chain_(std::move(chain)),
-        root_(std::move(root)),
         static_defect_(uncertainty.static_defect),
         static_defect_ratio_(uncertainty.static_defect_ratio),
         parameters_(chain_.parameters()) {
+    for (std::vector<double>& change : root)
+      (is_at_ports(change) ? root_at_ports_ : root_).push_back(std::move(change));
     if (!uncertainty.covariance.empty()) add_surfaces(uncertainty.covariance);
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);
@@ -199,6 +216,20 @@ class ResultUncertainty final : public Functor {
     Quantities written;
     for (const UncertainResult& each : uncertain_results) written.push_back(each.uncertainty);
     return written;
+  }
+
+  // Whether a change of the parameters changes effects at the static ports alone.
+  bool is_at_ports(const std::vector<double>& change) const {
+    std::vector<bool> is_elsewhere(change.size(), true);
+    for (std::size_t effect = 0; effect < chain_.effect_count(); ++effect) {
+      if (chain_.location_of(effect) != EffectLocation::static_defect) continue;
+      for (std::size_t i = 0; i < chain_.parameter_count_of(effect); ++i)
+        is_elsewhere[chain_.first_parameter_of(effect) + i] = false;
+    }
+    for (std::size_t i = 0; i < change.size(); ++i) {
+      if (is_elsewhere[i] && change[i] != 0.0) return false;
+    }
+    return true;
   }
 
   // Squared differences of neighbouring coefficients, including their errors.
@@ -234,11 +265,13 @@ class ResultUncertainty final : public Functor {
     const Results below = results();
     move(0.0);
     for (std::size_t i = 0; i < variances_.size(); ++i) {
-      const double difference = is_missing(above[i])   ? results_[i] - below[i]
-                                : is_missing(below[i]) ? above[i] - results_[i]
-                                                       : 0.5 * (above[i] - below[i]);
+      const double difference = half_difference(above[i], results_[i], below[i]);
       variances_[i] += difference * difference;
     }
+  }
+
+  static double half_difference(double above, double middle, double below) noexcept {
+    return is_missing(above) ? middle - below : is_missing(below) ? above - middle : 0.5 * (above - below);
   }
 
   // Results of the chain for the present inputs, parameters and amounts.
@@ -256,8 +289,9 @@ class ResultUncertainty final : public Functor {
     return found;
   }
 
-  Chain chain_;  // model with the calibrations of the uncertainty
-  std::vector<std::vector<double>> root_;
+  Chain chain_;                              // model with the calibrations of the uncertainty
+  std::vector<std::vector<double>> root_{};  // changes of the parameters
+  std::vector<std::vector<double>> root_at_ports_{};
   double static_defect_;
   double static_defect_ratio_;
   std::vector<FlatOutside> surfaces_;
