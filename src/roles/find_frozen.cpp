@@ -123,6 +123,18 @@ std::vector<Segment> each_once(std::vector<Segment> segments) {
   return segments;
 }
 
+/// True if two means of records in flight, one after the other without missing ones, are equal. A sensor
+/// with one value for five seconds has such means; reading all its samples takes longer.
+bool has_equal_means(const std::vector<double>& means, const std::vector<bool>& flying) {
+  constexpr double rounding = 1e-12;  // relative; means of one value over different numbers of samples
+  double last = nan;
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    if (flying[i] && std::abs(means[i] - last) <= rounding * std::abs(last)) return true;
+    if (!flying[i] || !std::isnan(means[i])) last = flying[i] ? means[i] : nan;
+  }
+  return false;
+}
+
 /// True for the sensors that a sample loop watches.
 bool is_watched(Quantity quantity) {
   return std::find(always_varying.begin(), always_varying.end(), quantity) != always_varying.end();
@@ -196,7 +208,7 @@ std::vector<Segment> find_frozen(const Flight& flight, const std::string& variab
   std::vector<Segment> frozen = find_frozen(quantity, means, flying);
   // Other quantities may be computed from several variables.
   const int rate = is_watched(quantity) ? flight.variable(variable).rate : 1;
-  if (rate == 1) return frozen;
+  if (rate == 1 || !has_equal_means(means, flying)) return frozen;
   std::vector<bool> marked(means.size());
   const auto mark = [&marked](std::size_t first, std::size_t end) {
     std::fill(marked.begin() + static_cast<std::ptrdiff_t>(first),
