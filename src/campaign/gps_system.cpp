@@ -99,7 +99,7 @@ double thermometer_of(const GpsSystem& system, const std::vector<double>& usual)
          pseudo_solution(products.topLeftCorner(count, count), products.col(count).head(count))[law];
 }
 
-std::string disagreement_of_gps(double variance) {
+std::string format_disagreement(double variance) {
   constexpr double notable = 2.0;
   const double factor = std::sqrt(variance);
   if (factor < notable) return "";

@@ -46,7 +46,7 @@ double thermometer_of(const GpsSystem& system, const std::vector<double>& usual)
 
 /// Warning that parts of the flights, or wind and height, disagree by more than their noise explains;
 /// empty below a factor of two. @param variance factor of the variance of GPS, see `variance_factor`
-std::string disagreement_of_gps(double variance);
+std::string format_disagreement(double variance);
 
 /// Evidence of one flight against wind or height about the error of delta-p in parts of its samples.
 ///

@@ -57,6 +57,7 @@ Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_share_ = share_.part(0, flights_.size());
+  known_noise_.resize(reference_count());
   const Eigen::Index columns_count = binned_.columns.front().cols();
   for (const Eigen::VectorXd& effect : added) {
     added_.emplace_back(Eigen::VectorXd::Zero(columns_count));
@@ -82,26 +83,26 @@ Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
     const double by_drift = search_from(start, false);
     if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true);
   }
-  if (nuisances_ > 0) find_gps_variance();
+  if (nuisances_ > 0) find_variance_factor();
 }
 
-void Analysis::find_gps_variance() {
+void Analysis::find_variance_factor() {
   constexpr int max_rounds_of_variance = 4;
   constexpr double notable = 1.05;  // ratio of two factors; no result depends on it
   SearchOptions options;
   options.seed = random_seed;
   options.references = binned_.reference;
   for (int round = 0; round < max_rounds_of_variance; ++round) {
-    const double variance = gps_variance_with(result_.chosen);
-    if (std::max(variance, gps_variance_) < notable * std::min(variance, gps_variance_)) break;
-    gps_variance_ = variance;
+    const double variance = variance_factor_with(result_.chosen);
+    if (std::max(variance, variance_factor_) < notable * std::min(variance, variance_factor_)) break;
+    variance_factor_ = variance;
     coefficients_ = coefficients(result_.chosen);
     find_search(result_.chosen);
     result_ = search_->run(options);
   }
 }
 
-double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) const {
+double Analysis::variance_factor_with(const std::vector<std::size_t>& chosen) const {
   std::vector<Eigen::Index> columns = indices_of(chosen);
   const Eigen::Index tested = as_index(columns.size());
   WhitenedSystem system = whiten_all();
@@ -143,7 +144,7 @@ double Analysis::gps_variance_with(const std::vector<std::size_t>& chosen) const
   if (reference_count() > 1) {
     for (const auto& [number, sum] : references) parts.push_back(part_of_rows(sum, estimate));
   }
-  return variance_factor(parts, covariance, tested, gps_variance_);
+  return internal::variance_factor(parts, covariance, tested, variance_factor_);
 }
 
 double Analysis::search_from(const Eigen::VectorXd& start, bool generous) {
@@ -230,17 +231,22 @@ std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& gr
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients,
                           bool is_rough) {
-  std::size_t reference = 0;
+  // The references that have flights, in the order in which their noise is found.
+  std::vector<std::size_t> references = binned_.reference;
+  references.erase(std::unique(references.begin(), references.end()), references.end());
+  auto next = references.begin();
   likelihood_ = 0.0;
   noise_ =
       noise_after(groups, coefficients, [&](const auto& bins, const auto& columns, const auto& residuals) {
-        if (is_rough) return estimate_noise(bins, residuals);
-        if (reference == known_noise_.size()) known_noise_.emplace_back();
-        KnownNoise& known = known_noise_[reference];
+        const std::size_t number = *next++;
+        const bool has_white_rows = std::any_of(
+            further_.begin(), further_.end(),
+            [number](const FlightColumns& each) { return each.reference == number && each.is_by_gps; });
+        if (is_rough || has_white_rows) return estimate_noise(bins, residuals);
+        KnownNoise& known = known_noise_[number];
         if (!are_equal(known.columns, columns) || !are_equal(known.residuals, residuals))
           known = {columns, residuals, internal::find_noise(bins, columns, residuals, share_.threads())};
-        if (reference == 0) drift_gain_ = known.found.drift_gain;
-        ++reference;
+        if (number == 0) drift_gain_ = known.found.drift_gain;
         likelihood_ += known.found.likelihood;
         return with_slower_noise(known.found.model);  // this likelihood includes only what the flights show
       });
@@ -307,7 +313,7 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns,
     white[f].rows = Eigen::MatrixXd::Zero(gps.rows.rows(), own + nuisances_ + 1);
     white[f].rows.leftCols(as_index(of_gps.size())) = gps.rows(Eigen::all, of_gps).cast<double>();
     white[f].rows.rightCols(nuisances_ + 1) = gps.rows.rightCols(nuisances_ + 1).cast<double>();
-    white[f].rows /= std::sqrt(gps_variance_);
+    white[f].rows /= std::sqrt(variance_factor_);
     const std::vector<std::size_t>& records = binned_.bins[f].records();
     for (const std::size_t record : gps.record) {
       const auto next = std::upper_bound(records.begin(), records.end(), record) - records.begin();
@@ -319,7 +325,7 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns,
   if (nuisances_ > 0) {
     const auto rows = share_.sum_of_each_flight<double>(
         [&white](std::size_t f) { return static_cast<double>(white[f].rows.rows()); });
-    system.row_count -= static_cast<std::size_t>(rows * (1.0 - 1.0 / gps_variance_));
+    system.row_count -= static_cast<std::size_t>(rows * (1.0 - 1.0 / variance_factor_));
   }
   return system;
 }
@@ -346,7 +352,7 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
     if (!share_.is_local(later) || flight(later).is_by_gps) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
-      if (flight(earlier).file == flight(later).file && flight(earlier).window == flight(later).window)
+      if (flight(earlier).file == flight(later).file)
         internal::take_out_common_noise(binned_.bins, earlier, later, left, scores);
     }
   }
@@ -432,7 +438,7 @@ Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) 
     const Eigen::MatrixXd rows = rows_of_refit(f, indices);
     PartialSums own(1, rows.cols());
     own.products[0] = rows.transpose() * rows;
-    own.counts[0] = static_cast<double>(rows.rows()) / (flight(f).is_by_gps ? gps_variance_ : 1.0);
+    own.counts[0] = static_cast<double>(rows.rows()) / (flight(f).is_by_gps ? variance_factor_ : 1.0);
     return own;
   });
   return coefficients(groups, solution(sums.products[0], sums.counts[0], groups));
@@ -458,7 +464,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
       if (flight(f).reference == 0) own.add(part + held_out_parts, all.row(i).transpose());
     }
     if (flight(f).is_by_gps) {
-      for (double& count : own.counts) count /= gps_variance_;
+      for (double& count : own.counts) count /= variance_factor_;
     }
     return own;
   });

@@ -77,7 +77,7 @@ class Analysis {
   Competition competition(const std::vector<std::size_t>& chosen,
                           const std::vector<Eigen::MatrixXd>& rivals) const;
   /// Factor of the variance of GPS, from halves of flights and from references; 1 without GPS.
-  double gps_variance() const { return gps_variance_; }
+  double variance_factor() const { return variance_factor_; }
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
@@ -125,9 +125,9 @@ class Analysis {
   /// its effects. @param generous removes all candidate effects before the first noise estimate
   double search_from(const Eigen::VectorXd& start, bool generous);
   /// Finds the factor of the variance of GPS, and repeats the search with it.
-  void find_gps_variance();
+  void find_variance_factor();
   /// Factor with base and groups, from halves of flights and from references.
-  double gps_variance_with(const std::vector<std::size_t>& chosen) const;
+  double variance_factor_with(const std::vector<std::size_t>& chosen) const;
   void replace_outliers(const Eigen::VectorXd& coefficients);
   /// @param is_rough a first estimate without slow drift
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& coefficients, bool is_rough);
@@ -178,7 +178,7 @@ class Analysis {
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
   Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS
-  double gps_variance_ = 1.0;                   // the whitened rows of GPS are divided by its root
+  double variance_factor_ = 1.0;                // the whitened rows of GPS are divided by its root
   Eigen::VectorXd prior_;                       // inverse variances of the coefficients of the base
   std::vector<Eigen::VectorXd> added_{};        // coefficients of all columns for each added effect
   std::vector<Eigen::MatrixXd> uncertainty_{};  // columns of uncertain shapes of each flight, in bins

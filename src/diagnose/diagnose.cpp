@@ -268,7 +268,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
 
   const Analysis analysis(std::move(columns), groups_of(set, set.candidates), added_of(model, set.base),
                           prior_of(references, set.base));
-  const std::string disagreement = disagreement_of_gps(analysis.gps_variance());
+  const std::string disagreement = format_disagreement(analysis.variance_factor());
   if (!disagreement.empty()) diagnosis.notes.push_back(warning_note(disagreement));
   diagnosis.threshold = analysis.result().threshold;
   diagnosis.findings = findings_of(analysis, references, set.candidates);

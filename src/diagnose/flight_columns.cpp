@@ -147,7 +147,8 @@ void leave_out_empty(PartitionedColumns& columns) {
     const FlightColumns& flight = columns.flights[number];
     const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
     const bool is_long = flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(min_samples);
-    return has_value(flight.given) && is_long ? 1 : 0;
+    const bool has_rows = !flight.is_by_gps || flight.gps.rows.size() > 0;
+    return has_value(flight.given) && is_long && has_rows ? 1 : 0;
   });
   std::vector<std::size_t> left;
   std::vector<FlightColumns> flights;

@@ -92,7 +92,7 @@ class GpsSolver {
       read(round < rounds_with_noise, round == rounds - 2);
       const Eigen::VectorXd from = requested_values();
       step();
-      if (round + 1 >= rounds_with_noise) find_variance(from);
+      if (round + 1 >= rounds_with_noise) find_variance_factor(from);
     }
     const Eigen::VectorXd before_last = requested_values();
     columns_ = flights_.front()->setup().parameters();
@@ -173,7 +173,7 @@ class GpsSolver {
           solution_.values);
       for (std::size_t f = 0; f < parts.size(); ++f) {
         for (const auto& [block, products] : parts[f].blocks)
-          blocks[f][block].emplace_back(r, products / variance_);
+          blocks[f][block].emplace_back(r, products / variance_factor_);
         defects_ += parts[f].defects;
         samples_ += parts[f].samples;
       }
@@ -305,12 +305,12 @@ class GpsSolver {
 
   /// Finds the factor of the variance of GPS, after a step. @param from values of the requested coefficients
   /// before the step
-  void find_variance(const Eigen::VectorXd& from) {
+  void find_variance_factor(const Eigen::VectorXd& from) {
     Eigen::VectorXd step = optimum_;
     step.head(count_) -= from - before_;
     std::vector<InformationPart> parts;
     for (const Eigen::MatrixXd& products : parts_) parts.push_back(part_of_rows(products, step));
-    variance_ = variance_factor(parts, posterior_, count_, variance_);
+    variance_factor_ = variance_factor(parts, posterior_, count_, variance_factor_);
   }
 
   /// Sets coefficients beyond a bound to the bound. The others get their best values with the bound held.
@@ -446,7 +446,7 @@ class GpsSolver {
   }
 
   void add_notes(GpsFit& fit) const {
-    const std::string disagreement = disagreement_of_gps(variance_);
+    const std::string disagreement = format_disagreement(variance_factor_);
     if (!disagreement.empty()) fit.warnings.push_back(disagreement);
     const std::string_view manoeuvres =
         std::any_of(flights_.begin(), flights_.end(),
@@ -496,7 +496,7 @@ class GpsSolver {
   Eigen::MatrixXd by_fixed_{};               // products of these columns with those of fixed coefficients
   std::vector<Eigen::MatrixXd> products_{};  // one per block
   std::vector<Eigen::MatrixXd> parts_{};     // products of halves of flights and of references
-  double variance_ = 1.0;                    // factor of the variance of GPS; its products are divided by it
+  double variance_factor_ = 1.0;             // factor of the variance of GPS; its products are divided by it
   Eigen::MatrixXd defects_{};
   std::size_t samples_ = 0;
   Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long

@@ -21,6 +21,7 @@ using pcor::test::scenario_text;
 using pcor::test::simulated;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 namespace {
 
@@ -282,4 +283,19 @@ TEST(GpsFit, ErrorOfAFixedCoefficientIsCarriedThroughTheFit) {
     EXPECT_GT(result.parameters[0].standard_error, (1.0 - tolerance) * std::abs(change));
     EXPECT_GT(result.parameters[0].noise_error, (1.0 - tolerance) * std::abs(change));
   }
+}
+
+// Each flight agrees with its noise: only the comparison of the flights shows that one law is wrong for both.
+TEST(GpsFit, StatedErrorContainsTheDisagreementOfFlights) {
+  const auto fit_beside_a_flight_with = [](const std::string& a0) {
+    const std::string effect = "\n[[effect]]\nid = \"static-constant\"\na0 = " + a0 + "\n";
+    const ModelDefinition model = no_law();
+    return pcor::refit({simulated("c130-eight-circles"), simulated("c130-eight-circles", effect)}, model,
+                       pcor::read_references({"wind"}, model, {}).used, {});
+  };
+  const RefitResult alike = fit_beside_a_flight_with("0.0");
+  const RefitResult different = fit_beside_a_flight_with("0.003");
+  EXPECT_GT(stated_by(different), 2.0 * stated_by(alike));
+  EXPECT_THAT(different.warnings, Contains(HasSubstr("disagree")));
+  EXPECT_THAT(alike.warnings, Not(Contains(HasSubstr("disagree"))));
 }
