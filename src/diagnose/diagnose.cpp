@@ -293,6 +293,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   doubt_by_size(diagnosis);
+  if (diagnosis.is_refitted) doubt_by_refit(diagnosis);
   diagnosis.verdict = verdict_of(diagnosis, explained, left);
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());

@@ -561,6 +561,21 @@ void doubt_by_size(Diagnosis& diagnosis) {
   }
 }
 
+void doubt_by_refit(Diagnosis& diagnosis) {
+  constexpr double min_rms = 0.05;  // hPa, noise of a static pressure
+  for (const Finding& finding : diagnosis.findings) {
+    const double removed = finding.rms_before * finding.rms_before - finding.rms_after * finding.rms_after;
+    const bool is_large = finding.rms > std::max(min_rms, 0.5 * finding.rms_before);
+    const bool is_left =
+        removed < 0.5 * finding.rms * finding.rms && finding.rms_after > 0.8 * finding.rms_before;
+    if (!is_large || !is_left) continue;
+    diagnosis.notes.push_back(warning_note(
+        fmt::format("confirm {} of {:.3f} hPa with a further reference or flights: a refit with it changes "
+                    "the held-out rms from {:.3f} to {:.3f} hPa only, so slow variations contradict its size",
+                    finding.id(), finding.rms, finding.rms_before, finding.rms_after)));
+  }
+}
+
 void doubt_by_atmosphere(Diagnosis& diagnosis) {
   constexpr double min_increase = 1.02;
   for (Finding& finding : diagnosis.findings) {

@@ -47,6 +47,11 @@ inline bool is_of_impossible_size(const Finding& finding) { return finding.times
 /// unknown error" becomes its rival, with a note.
 void doubt_by_size(Diagnosis& diagnosis);
 
+/// The size of an effect is estimated together with drift, from its faster variations. A note warns of an
+/// effect of more than 0.05 hPa and half of the held-out rms if a refit with it decreases this rms by less
+/// than a fifth, and its square by less than half of the square of the size.
+void doubt_by_refit(Diagnosis& diagnosis);
+
 /// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
 /// clearly predict held-out parts may be one. So may a finding that increases their rms: its evidence is in
 /// fast variations, which the filter of a receiver changes. So may a finding of an impossible size: a wind
