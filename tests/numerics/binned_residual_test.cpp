@@ -50,7 +50,7 @@ double error_of_mean(const std::vector<double>& values, double max_bins) {
 
 // Without a level for each five minutes the error of the last series was twice as large.
 TEST(BinnedResidual, WideBinsGiveTheErrorOfTheMean) {
-  constexpr std::size_t count = 6 * 3600;
+  constexpr std::size_t count = 21600;  // six hours of 1 s
   const auto steady = [](double) { return 0.1; };
   const auto turbulent = [](double time) { return std::fmod(time, 7200.0) < 1800.0 ? 1.0 : 0.1; };
   for (const auto& [memory, level] :
