@@ -20,6 +20,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t max_shapes = 48;
 constexpr double min_period = 300.0;  // s
 constexpr std::size_t min_innovations = 20;
+static_assert(Binning::max_width * static_cast<double>(min_innovations) <= local_noise_time);
 constexpr std::size_t min_flights = 4, max_bins = 50000;  // flights that determine the noise, and their bins
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;

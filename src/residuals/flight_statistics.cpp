@@ -91,7 +91,7 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
   for (std::size_t i = 0; i < residual.size(); ++i) {
     if (!std::isnan(residual[i])) used.push_back(i);
   }
-  constexpr double max_bins = 1000.0;
+  constexpr double max_bins = 1000.0;  // the noise of 67 minutes is found in bins of the usual 4 s
   const BinnedResidual binned(residual, samples.time, samples.step, max_bins);
   sums.sum_variance = binned.variance_of_sum(used, binned.noise_about_mean());
   return sums;
