@@ -253,10 +253,19 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
   flaps.out.resize(samples.time.size());
   std::vector<double> where_out;
   std::vector<double> where_in;
-  for (const Piece& piece : pieces) {
+  // A sample outside all pieces, for example in the first seconds after take-off, has the state of the piece
+  // nearest in time: flaps stay extended or retracted for minutes.
+  const std::vector<double>& time = samples.time;
+  std::size_t next = 0;  // sample
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Piece& piece = pieces[i];
     const bool is_out = piece.out > likely;
     (is_out ? where_out : where_in).push_back(piece.deficit.value);
-    for (std::size_t k = piece.first; k < piece.end; ++k) flaps.out[k] = is_out;
+    const auto is_nearest = [&](std::size_t k) {
+      return i + 1 == pieces.size() || k < piece.end || time[k] - piece.time < pieces[i + 1].time - time[k];
+    };
+    for (; next < time.size() && is_nearest(next); ++next)
+      flaps.out[next] = is_out && samples.motion.airspeed[next] >= min_airspeed;
   }
   flaps.deficit = where_out.empty() ? 0.0 : median(std::move(where_out));
   flaps.deviation = robust_standard_deviation(std::move(where_in));

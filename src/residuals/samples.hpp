@@ -65,12 +65,13 @@ struct FlapsByLift {
 /// state out the angle is too small by 12 to 80 %, uniformly distributed; in the state in it follows the
 /// relation, except for its error and one piece in a thousand with any value. The likelihood ratio of a piece
 /// is limited to a factor of 20, since neighbours share their errors, and above the speed limit of the flaps
-/// the state out becomes less probable with speed. Flaps are out if the probability is at least 90 %.
+/// the state out becomes less probable with speed. Flaps are out if the probability is at least 90 %. A sample
+/// outside all pieces has the state of the piece nearest in time.
 ///
 /// Nullopt if fewer than 15 pieces are above that speed, or the angle does not increase with n/q.
 ///
 /// @param angle of attack, deg, or ADIFR/QCR, which is linear in it; of every sample
-/// @param min_airspeed m/s; slower samples are not used
+/// @param min_airspeed m/s; slower samples are not used and not marked
 std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
                                               double min_airspeed);
 

@@ -71,6 +71,16 @@ TEST(FlapsByLift, LowAngleForTheLiftMeansExtendedFlaps) {
   }
 }
 
+TEST(FlapsByLift, FirstSecondsAfterTakeOffHaveTheStateOfTheNextPiece) {
+  FlightWithFlaps flight(1, 50.0);
+  for (std::size_t i = 0; i < 15; ++i) flight.samples.motion.airspeed[i] = 40.0;
+  const std::optional<FlapsByLift> found = flight.found();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(std::count(found->out.begin(), found->out.begin() + 15, true), 0) << "on the ground";
+  EXPECT_EQ(std::count(found->out.begin() + 15, found->out.begin() + 100, true), 85)
+      << "5 of them in a piece of 20 s that is too short to be judged";
+}
+
 TEST(FlapsByLift, SlowCleanFlightHasNoExtendedFlaps) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const std::optional<FlapsByLift> found = FlightWithFlaps(seed, 0.0).found();
