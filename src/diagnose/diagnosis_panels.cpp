@@ -60,13 +60,15 @@ ReportTable variables_table(const Unexplained& unexplained) {
       "variables explains as much by a curve if the residuals are shifted in time or have random signs; p "
       "tests the curve, so it can be small although the slope of the line is not significant. No line is "
       "fitted to an angle, or if the model's coefficients imitate the line.",
-      {"variable", "R2, curve", "R2, line", "slope of the line", "hPa per", "p", "formula", "what"}};
+      {"variable", "R2, curve", "R2, line", "slope of the line", "hPa per", "p", "formula", "similar to",
+       "what"}};
   for (const EmpiricalPredictor& variable : unexplained.variables) {
     const bool has_line = variable.slope_error > 0.0;
     table.rows.push_back(
         {variable.name, percent(variable.r2), has_line ? percent(variable.linear_r2) : "",
          has_line ? format_estimate(variable.slope, variable.slope_error, PlusSign::never) : "no line",
-         variable.unit, probability(variable.p_value), variable.formula, variable.description});
+         variable.unit, probability(variable.p_value), variable.formula, variable.similar_to,
+         variable.description});
   }
   return table;
 }

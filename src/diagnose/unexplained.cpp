@@ -4,8 +4,10 @@
 #include <cereal/types/set.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -301,25 +303,38 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
   return inputs;
 }
 
-/// Whether a variable is another record of a quantity: the two have a correlation above 0.95.
-bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity quantity) {
+/// Whether two series are images of each other: their correlation exceeds 0.95 in size. @param pair the two
+/// series of a local flight; null or empty if it lacks one
+bool are_images(const Analysis& analysis,
+                const std::function<std::array<const std::vector<double>*, 2>(std::size_t flight)>& pair) {
   constexpr double image = 0.95;
   const auto of_flights = analysis.share().of_each_flight<PairMoments>([&](std::size_t f) {
     PairMoments own;
-    const FlightColumns& flight = analysis.flights()[f];
-    const std::vector<double>* known = &flight.quantity(quantity);
-    if (known->empty()) known = flight.samples->model.find(quantity);
-    if (known == nullptr || known->empty()) return own;
+    const auto [x, y] = pair(f);
+    if (y == nullptr || y->empty()) return own;
     for (const std::size_t record : analysis.bins(f).records()) {
-      const double x = (*variable.values[f])[record];
-      const double y = (*known)[record];
-      if (std::isfinite(x) && std::isfinite(y)) own.add(x, y);
+      if (std::isfinite((*x)[record]) && std::isfinite((*y)[record])) own.add((*x)[record], (*y)[record]);
     }
     return own;
   });
   PairMoments all;
   for (const PairMoments& own : of_flights) all.add(own);
   return std::abs(all.correlation()) > image;
+}
+
+bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity quantity) {
+  return are_images(analysis, [&](std::size_t f) -> std::array<const std::vector<double>*, 2> {
+    const FlightColumns& flight = analysis.flights()[f];
+    const std::vector<double>* known = &flight.quantity(quantity);
+    if (known->empty()) known = flight.samples->model.find(quantity);
+    return {variable.values[f].get(), known};
+  });
+}
+
+bool is_image(const Analysis& analysis, const TestedVariable& variable, const TestedVariable& other) {
+  return are_images(analysis, [&](std::size_t f) -> std::array<const std::vector<double>*, 2> {
+    return {variable.values[f].get(), other.values[f].get()};
+  });
 }
 
 /// Most likely line in a variable.
@@ -370,7 +385,8 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
 }
 
 /// Adds the variables with significant structure, each once, and returns their structures.
-std::vector<const Structure*> add_traced(const StructureTest& tested, Diagnosis& diagnosis) {
+std::vector<const Structure*> add_traced(const Analysis& analysis, const StructureTest& tested,
+                                         Diagnosis& diagnosis) {
   std::vector<EmpiricalPredictor>& variables = diagnosis.unexplained.variables;
   std::vector<const Structure*> order;
   for (const Structure& structure : tested.structures()) {
@@ -388,6 +404,10 @@ std::vector<const Structure*> add_traced(const StructureTest& tested, Diagnosis&
     if (variables.size() == max_variables) break;
     if (!named.insert(structure->name).second) continue;
     variables.push_back(predictor_of(*structure, tested.chance_of(structure->equivalent)));
+    const auto similar = std::find_if(traced.begin(), traced.end(), [&](const Structure* stronger) {
+      return is_image(analysis, *structure->variable, *stronger->variable);
+    });
+    if (similar != traced.end()) variables.back().similar_to = (*similar)->name;
     traced.push_back(structure);
     if (traced.size() > 1) continue;
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f)
@@ -495,7 +515,7 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
                                  analysis.share(), [&](std::size_t f) -> const auto& { return residuals[f]; })
                            : rms_of_flights(&FlightDiagnosis::after);
     const double noise_rms = diagnosis.noise_rms_with_findings;
-    const std::vector<const Structure*> traced = add_traced(tested, diagnosis);
+    const std::vector<const Structure*> traced = add_traced(analysis, tested, diagnosis);
     // Retained effects describe a part of every reference that the lines do not include.
     if (chosen.empty() || overrules) find_places(analysis, traced, references, found.variables);
     // Part beyond the noise; at least the drift and the part that the best variable explains.

@@ -372,6 +372,19 @@ class Real(CaseTest):
         # The drift is a part of the residual.
         self.assertLess(found["unexplained"]["drift_rms_hpa"], found["delivered"]["rms_train_hpa"])
 
+    def test_gotex_lacks_attack_after_a_fit_of_both_laws(self):
+        """Seconds after take-off, whose flaps are unknown, do not decide: the default minimum airspeed finds attack too."""
+        flight = FLIGHTS / "GOTEX-rf06-C130-2004.nc"
+        self.run_tool("refit", flight, "-m", "c130-psfd-eq18", "--reference", "static:c130-psfrd-eq18", "-o", "own.toml",
+                      "--refit-reference", "other.toml")
+        self.run_tool("diagnose", flight, "-m", "own.toml", "--reference", "static:other.toml", "--json", "found.json")
+        found = json.loads((self.path / "found.json").read_text())
+        self.assertEqual([finding["effect"] for finding in found["findings"]], ["static-attack"])
+        similar = {each["name"]: each["similar_to"] for each in found["unexplained"]["variables"]}
+        self.assertTrue({similar["attack"], similar["RATIO"]} <= {"PLWC", "ADIFR"}, "records of one angle")
+        self.run_tool("improve", flight, "-m", "own.toml", "--reference", "static:other.toml", "-o", "out.toml", "--json", "out.json")
+        self.assertLess(json.loads((self.path / "out.json").read_text())["steps"][-1]["rms_holdout_hpa"], 0.15)
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

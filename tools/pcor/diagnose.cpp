@@ -104,8 +104,15 @@ void print_short(const Diagnosis& diagnosis) {
     say("advice: {}{}\n", advice.front(), advice.size() > 1 ? "; further advice with --verbose" : "");
   if (!diagnosis.unexplained.significant) return;
   std::vector<std::string> variables;
-  for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables)
-    variables.push_back(fmt::format("{} (R2 {:.2f})", variable.name, variable.r2));
+  for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
+    if (!variable.similar_to.empty()) continue;
+    std::vector<std::string> similar;
+    for (const EmpiricalPredictor& other : diagnosis.unexplained.variables) {
+      if (other.similar_to == variable.name) similar.push_back(other.name);
+    }
+    variables.push_back(fmt::format("{} (R2 {:.2f}{}{})", variable.name, variable.r2,
+                                    similar.empty() ? "" : "; similar: ", fmt::join(similar, ", ")));
+  }
   say("unexplained residual: {:.3f} hPa rms{}{}\n", diagnosis.unexplained.rms,
       variables.empty() ? "" : ", correlated with ", shortened_list(variables));
 }

@@ -308,6 +308,9 @@ struct EmpiricalPredictor {
   double centre = 0.0;     ///< mean of the variable over the samples used
   std::string formula{};   ///< formula of a corresponding effect, e.g. "k * (ENGTRQ - 48)"
   std::string sampling{};  ///< method of reduction to one value per record; empty if the file has one
+  /// Stronger variable of the same list with a correlation above 0.95 in size, for example another record of
+  /// the same angle; empty if there is none.
+  std::string similar_to{};
   /// Possible locations according to references independent of the static ports, e.g. "port", "laser"; empty
   /// if undetermined.
   std::vector<std::string> components{};
@@ -333,6 +336,8 @@ void describe(const EmpiricalPredictor& self, Field& field) {
   field("formula", self.formula, "formula of a corresponding effect");
   field("places", self.components, "possible instrument components; empty if undetermined");
   field("sampling", self.sampling, "reduction to one value per record");
+  field("similar_to", self.similar_to,
+        "stronger variable of the list with a correlation above 0.95 in size; empty if no variable has one");
 }
 
 /// Clause on the location of the cause, without full stop.
