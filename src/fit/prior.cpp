@@ -19,7 +19,9 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
   for (Eigen::Index k = 0; k < size; ++k) {
     const std::size_t parameter = requested[static_cast<std::size_t>(k)];
     if (task.surface_of(parameter) != nullptr) continue;
-    const double typical = task.parameters[parameter].typical;
+    const FitParameter& prior = task.parameters[parameter];
+    // A formula has no typical size.
+    const double typical = prior.typical > 0.0 ? prior.typical : std::abs(prior.start);
     if (doubt(k, k) > 0.0) {
       stated.push_back(k);
     } else if (typical > 0.0) {

@@ -303,8 +303,9 @@ Notes notes_of(const RefitResult& result, const FitTask& task, const Fitted& fit
   if (task.uses_prior()) {
     notes.emplace_back(
         "every coefficient has a Gaussian prior at its starting value; the covariance is that of the "
-        "model file, otherwise the typical size of the effect; combinations that the flights do not "
-        "determine, such as the common error of two static systems, keep the starting value and the error of "
+        "model file, otherwise the typical size of the effect, for a formula the value itself; combinations "
+        "that the flights do not determine, such as the common error of two static systems, keep the "
+        "starting value and the error of "
         "the prior");
   }
   return notes;

@@ -133,6 +133,26 @@ TEST(TwoSystems, CommonPartKeepsPriorError) {
   EXPECT_TRUE(fit.warnings.empty());
 }
 
+// A formula has no typical size; without a prior the constants once became 5e12 hPa, since only their
+// difference is determined.
+TEST(TwoSystems, FormulasKeepTheirValuesAsPriorErrors) {
+  Pair pair = c130();
+  for (auto* const system : {&pair.own, &pair.other}) {
+    pcor::ModelEffect law{"trailing-cone"};
+    law.formula = "c0 + c1 * dynamic_pressure";
+    law.parameter_names = {"c0", "c1"};
+    law.parameters = {3.0, 0.02};
+    law.unit = "hPa";
+    system->model.effects = {law};
+  }
+  const pcor::RefitResult fit = fit_both(pair, pcor::test::simulated("c130-eq18"));
+  for (const std::size_t constant : {0, 2}) {
+    EXPECT_NEAR(fit.parameters[constant].value, 3.0, 3.0);
+    // The mean of two constants with this prior error.
+    EXPECT_NEAR(fit.parameters[constant].standard_error, 3.0 / std::sqrt(2.0), 0.3);
+  }
+}
+
 TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
   Pair pair = c130();
   constexpr double off = 0.0005;  // relative to the pressure: 0.3 to 0.5 hPa

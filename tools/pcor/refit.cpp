@@ -384,9 +384,10 @@ std::function<void()> add_refit(CLI::App& program) {
                   "are iterated to convergence: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
   add_training_options(*command, options->fit, "the fit");
-  command->add_flag("--prior", options->prior,
-                    "apply a Gaussian prior at the starting values, with the covariance in the model file, "
-                    "otherwise with the typical size of each effect as standard error");
+  command->add_flag(
+      "--prior", options->prior,
+      "apply a Gaussian prior at the starting values, with the covariance in the model file, "
+      "otherwise with the typical size of each effect, for a formula the value itself, as standard error");
   command
       ->add_option("--memory", options->memory_mib,
                    "MiB of samples kept in memory between passes over the flights; the rest is read again")

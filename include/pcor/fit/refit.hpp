@@ -38,8 +38,9 @@ struct RefitOptions {
   /// both sensors.
   std::vector<std::string> alike{};
   /// Gaussian prior at the starting value of every coefficient: covariance from the model file, otherwise the
-  /// typical size of the effect. Always used if the reference is fitted too: two static systems determine
-  /// only their difference, and common effects keep the value and error of the prior.
+  /// typical size of the effect, for a formula the value itself. Always used if the reference is fitted too:
+  /// two static systems determine only their difference, and common effects keep the value and error of the
+  /// prior.
   bool use_prior = false;
   /// Effects that a diagnosis added to the model, with its estimates as starting values. Each coefficient has
   /// a Gaussian prior about its neutral value; the standard deviation is three times the typical size of the
