@@ -367,7 +367,17 @@ class ForwardSelection {
     // After an addition, the diagnosis of the extended model has the next candidates.
     if (result_.steps.size() > added + 1) return;
     refused_.clear();  // `why_stopped` has them
-    stop(StopReason::no_gain, fmt::format("no candidate is kept; {}", fmt::join(refusals, "; ")));
+    stop(StopReason::no_gain,
+         fmt::format("no candidate is kept{}; {}", role_advice(), fmt::join(refusals, "; ")));
+  }
+
+  /// Advice to name the variable of a role, without which an effect is not tested; empty if no role lacks
+  /// one.
+  std::string role_advice() const {
+    if (diagnosis().unnamed_roles.empty()) return "";
+    const UnnamedRole& unnamed = diagnosis().unnamed_roles.front();
+    return fmt::format("; write {} = \"{}\" into [variables] of the model to test {}", unnamed.role,
+                       unnamed.variable, unnamed.effect);
   }
 
   void stop(StopReason reason, std::string why) {
@@ -433,11 +443,8 @@ class ForwardSelection {
     std::string about = "not correlated with any variable of the files";
     if (!left.variables.empty()) {
       about = fmt::format("correlated with {}", left.variables.front().name);
-      if (!now.unnamed_roles.empty()) {
-        const UnnamedRole& unnamed = now.unnamed_roles.front();
-        about += fmt::format("; write {} = \"{}\" into [variables] of the model to test {}", unnamed.role,
-                             unnamed.variable, unnamed.effect);
-      } else {
+      about += role_advice();
+      if (now.unnamed_roles.empty()) {
         const EmpiricalPredictor* const traced = predictor_with_formula(left);
         about += loop_.trace_variables || traced == nullptr
                      ? "; no formula of this variable can be added"

@@ -499,6 +499,14 @@ TEST_F(Improve, ATracedVariableMustReduceTheResidual) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("traced-engtrq"));
 }
 
+TEST_F(Improve, AdvisesTheRoleOfATracedVariableAfterARejection) {
+  Diagnosis unnamed = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
+  unnamed.unnamed_roles = {{"engine_torque", "ENGTRQ", "speedbrake-thrust"}};
+  const Improvement improvement = run({unnamed}, {1.0, 0.991});
+  EXPECT_EQ(improvement.stop_reason, StopReason::no_gain);
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("engine_torque = \"ENGTRQ\""));
+}
+
 TEST_F(Improve, NeverAddsAnEffectTwice) {
   const Improvement improvement =
       run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.9, 0.8, 0.7});
