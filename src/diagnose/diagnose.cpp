@@ -301,10 +301,12 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   return diagnosis;
 }
 
+/// Every alias counts: probabilities of aliases hold for the exact shapes of the catalogue, and the
+/// difference of two systems does not show which of them has the error.
 bool may_be_of(bool reference, const Finding& finding) {
   return finding.of_reference == reference ||
          std::any_of(finding.aliases.begin(), finding.aliases.end(), [reference](const Alias& alias) {
-           return alias.probability >= min_probability && is_on_other_system(alias.effect) == reference;
+           return is_on_other_system(alias.effect) == reference;
          });
 }
 

@@ -65,8 +65,8 @@ struct FlapsByLift {
 /// state out the angle is too small by 12 to 80 %, uniformly distributed; in the state in it follows the
 /// relation, except for its error and one piece in a thousand with any value. The likelihood ratio of a piece
 /// is limited to a factor of 20, since neighbours share their errors, and above the speed limit of the flaps
-/// the state out becomes less probable with speed. Flaps are out if the probability is at least 90 %. A sample
-/// outside all pieces has the state of the piece nearest in time.
+/// the state out becomes less probable with speed. Flaps are out if the probability is at least 90 %. A
+/// sample outside all pieces has the state of the piece nearest in time.
 ///
 /// Nullopt if fewer than 15 pieces are above that speed, or the angle does not increase with n/q.
 ///

@@ -440,6 +440,14 @@ TEST_F(Improve, KeepsTheModelIfTheReferenceMayBeWrong) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
 }
 
+// Shapes of nature differ from those of the catalogue, and then small differences of the likelihood mean
+// nothing.
+TEST_F(Improve, AnImprobableAliasOnTheOtherSystemCounts) {
+  const Improvement improvement = run({two_rivals("adif-drift", "reference:time-drift", 0.999)});
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_EQ(improvement.stop_reason, StopReason::reference_system);
+}
+
 TEST_F(Improve, UninformativeHoldOutUsesFittedFlights) {
   held_out_tells_ = false;
   Diagnosis found = diagnosis(Verdict::identified, {"static-lag"});
