@@ -159,6 +159,7 @@ struct Flight::Implementation {
   std::size_t records;
   std::uintmax_t bytes;
   TimeAxis axis;
+  std::vector<double> times;  // of all records: of a classic file, reading them reads all of it
   std::vector<std::string> names;
   std::vector<std::optional<Variable>> variables;  // requested names, in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
@@ -333,11 +334,15 @@ struct Flight::Implementation {
     return variable;
   }
 
+  void require_records(const std::string& name, RecordBlock block) const {
+    if (block.first > records || block.count > records - block.first)
+      file->refuse(Error::Code::usage, ": cannot read {} at records {} to {}, there are {}", name,
+                   block.first, block.first + block.count, records);
+  }
+
   RejectedCounts read(Variable& variable, RecordBlock block, double* values) {
     if (variable.refusal) throw *variable.refusal;
-    if (block.first > records || block.count > records - block.first)
-      file->refuse(Error::Code::usage, ": cannot read {} at records {} to {}, there are {}",
-                   variable.info.name, block.first, block.first + block.count, records);
+    require_records(variable.info.name, block);
     if (block.count == 0) return {};
     read_numbers(variable.id, block, values);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
@@ -368,8 +373,7 @@ struct Flight::Implementation {
     file->read(id, block, out);
   }
 
-  // Records at which seconds of the day restart are known after the scan; until then the scan adds the days
-  // itself.
+  /// Times without the days after the records at which seconds of the day restart.
   void read_time(RecordBlock block, double* out) {
     read(variable(static_cast<std::size_t>(source.variable)), block, out);
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -381,8 +385,6 @@ struct Flight::Implementation {
         file->refuse(Error::Code::time, ": the time of record {} is {}; remove that record", block.first + i,
                      utc_text(out[i]));
     }
-    for (const std::size_t wrap : axis.midnight_wraps)
-      for (std::size_t i = wrap > block.first ? wrap - block.first : 0; i < block.count; ++i) out[i] += day;
   }
 
   bool begins_again_at_midnight(double before, double now) const {
@@ -397,10 +399,10 @@ struct Flight::Implementation {
   void scan_time() {
     std::size_t backward = 0, repeated = 0, first_bad = 0;
     double bad = 0, bad_before = 0, before = 0;
-    std::vector<double> times, steps;
+    std::vector<double> steps;
+    times.resize(records);
     for (const RecordBlock block : blocks_of(records)) {
-      times.resize(block.count);
-      read_time(block, times.data());
+      read_time(block, times.data() + block.first);
       if (block.first == 0) {
         axis.first = times.front();
         for (std::size_t i = 1; i < block.count; ++i)
@@ -411,13 +413,13 @@ struct Flight::Implementation {
           axis.step = *middle;
         }
       }
-      for (std::size_t i = 0; i < block.count; ++i) {
-        const std::size_t record = block.first + i;
-        if (record > 0 && begins_again_at_midnight(before, times[i])) {
+      for (std::size_t record = block.first; record < block.first + block.count; ++record) {
+        for (std::size_t i = 0; i < axis.midnight_wraps.size(); ++i) times[record] += day;
+        if (record > 0 && begins_again_at_midnight(before, times[record])) {
           axis.midnight_wraps.push_back(record);
-          for (std::size_t j = i; j < block.count; ++j) times[j] += day;
+          times[record] += day;
         }
-        const double now = times[i];
+        const double now = times[record];
         if (record > 0 && now <= before) {
           if (backward + repeated == 0) first_bad = record, bad = now, bad_before = before;
           ++(now < before ? backward : repeated);
@@ -563,7 +565,8 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
 }
 
 void Flight::read_time_stamps(RecordBlock block, double* out) const {
-  implementation_->read_time(block, out);
+  implementation_->require_records(time_variable(), block);
+  std::copy_n(implementation_->times.begin() + static_cast<std::ptrdiff_t>(block.first), block.count, out);
 }
 
 void Flight::read_sample_times(RecordBlock block, int rate, double* out) const {
