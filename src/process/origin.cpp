@@ -48,15 +48,6 @@ std::string sha256_of_text(const std::string& text) {
   return sha256_of(stream);
 }
 
-/// The SHA-256 of a file's bytes, as `sha256sum` prints it. Memory does not depend on its length.
-std::string sha256_of_file(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::string digits = sha256_of(stream);
-  if (!stream.eof())
-    throw Error(Error::Code::file, path.string() + " cannot be read; check the path and the permissions");
-  return digits;
-}
-
 /// Names of `UncertaintyPart`, in its order.
 constexpr std::array<const char*, 5> part_names{"total if stated", "total", "systematic", "random", "none"};
 
@@ -88,6 +79,14 @@ std::string options_text(const ProcessOptions& options) {
 
 }  // namespace
 
+std::string sha256_of_file(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  const std::string digits = sha256_of(stream);
+  if (!stream.eof())
+    throw Error(Error::Code::file, path.string() + " cannot be read; check the path and the permissions");
+  return digits;
+}
+
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options) {
   const std::vector<ModelEffect>& effects = model.model.effects;
   return options.correct_with == CorrectWith::model &&
@@ -95,6 +94,7 @@ bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& opt
 }
 
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
+                                                                   const std::string& input_sha256,
                                                                    const ModelDefinition& model,
                                                                    const ProcessOptions& options) {
   const std::string text = write_model(model);
@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, std::string>> origin_attributes(const std::fi
           {"pcor_options", chosen},
           {options_hash_attribute, sha256_of_text(chosen)},
           {"pcor_input", input.filename().string()},
-          {input_hash_attribute, sha256_of_file(input)}};
+          {input_hash_attribute, input_sha256}};
 }
 
 bool is_up_to_date(const std::filesystem::path& output, const std::filesystem::path& input,

@@ -13,10 +13,15 @@ namespace pcor::internal {
 /// Whether a model changes no pressure: all its coefficients are neutral.
 bool changes_no_pressure(const ModelDefinition& model, const ProcessOptions& options);
 
+/// The SHA-256 of a file's bytes, as `sha256sum` prints it. Memory does not depend on its length.
+/// @throws Error if the file cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
+
 /// Provenance of an output: names and texts of global attributes. Contains the complete text of the model
 /// file, so that the output and the flight suffice to reproduce the result.
-/// @throws Error if the flight cannot be read, or the model cannot be written.
+/// @throws Error if the model cannot be written.
 std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
+                                                                   const std::string& input_sha256,
                                                                    const ModelDefinition& model,
                                                                    const ProcessOptions& options);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -51,7 +52,11 @@ double flying_dynamic_pressure(const std::string& aircraft) {
 class Processing {
  public:
   Processing(const std::filesystem::path& input, const ModelDefinition& file, const ProcessOptions& options)
-      : flight_(input, options.timestamp_alignment), given_(file), file_(file), options_(options) {}
+      : flight_(input, options.timestamp_alignment),
+        given_(file),
+        file_(file),
+        options_(options),
+        sha256_(std::async(sha256_of_file, flight_.path())) {}
 
   ProcessSummary run(const std::filesystem::path& output) {
     summary_.aircraft = flight_.aircraft();
@@ -254,11 +259,11 @@ class Processing {
     }
   }
 
-  FileDescription describe() const {
+  FileDescription describe() {
     FileDescription description;
     description.history = options_.history;
     name_coordinates(flight_, file_, description);
-    description.attributes = origin_attributes(flight_.path(), given_, options_);
+    description.attributes = origin_attributes(flight_.path(), sha256_.get(), given_, options_);
     description.attributes.emplace_back("pcor_time_stamp",
                                         flight_.timestamp_alignment() == TimestampAlignment::begin
                                             ? "begin of the record"
@@ -445,6 +450,7 @@ class Processing {
   const ModelDefinition& given_;
   ModelDefinition file_;  // model adapted to this flight
   const ProcessOptions& options_;
+  std::future<std::string> sha256_;  // of the input, computed by another thread
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
   std::optional<Loop> loop_;
