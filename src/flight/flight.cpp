@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <unordered_map>
@@ -20,6 +21,7 @@
 #include "flight/called_corrected.hpp"
 #include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
+#include "flight/record_means.hpp"
 #include "flight/registration.hpp"
 #include "flight/status_flags.hpp"
 #include "flight/time_source.hpp"
@@ -105,21 +107,6 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   return variable;
 }
 
-double mean_on_circle(const std::vector<double>& values, const std::array<double, 2>& range) {
-  const double turn = 2 * std::acos(-1.), width = range[1] - range[0];
-  double sine = 0, cosine = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    const double angle = turn * (value - range[0]) / width;
-    sine += std::sin(angle);
-    cosine += std::cos(angle);
-  }
-  // Nothing there, or directions that cancel: there is no mean direction.
-  if (std::hypot(sine, cosine) < 1e-9 * static_cast<double>(values.size())) return nan;
-  const double angle = std::atan2(sine, cosine) / turn;
-  return range[0] + width * (angle < 0 ? angle + 1 : angle);
-}
-
 // UDUNITS treats an angle as a plain number, so a count would convert to it.
 bool is_angle(const std::string& unit) {
   const std::string standard = standard_unit(unit);
@@ -163,6 +150,7 @@ struct Flight::Implementation {
   std::vector<std::string> names;
   std::vector<std::optional<Variable>> variables;  // requested names, in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
+  std::unordered_map<int, RecordMeans> means;  // by the id of the variable
   std::vector<double> scratch;
   std::vector<double> flags;
 
@@ -368,6 +356,26 @@ struct Flight::Implementation {
     return excluded;
   }
 
+  const RecordMeans* kept_means(const Variable& variable) const {
+    const auto found = means.find(variable.id);
+    return found == means.end() ? nullptr : &found->second;
+  }
+
+  /// Adds the means of a block to those that are kept. False, and nothing is kept, if it cannot be read.
+  bool add_means(const std::string& name, RecordBlock block) {
+    if (index.count(name) == 0) return false;
+    const int id = static_cast<int>(index.at(name));
+    try {
+      Variable& series = find_series(name);
+      scratch.resize(block.count * static_cast<std::size_t>(series.info.rate));
+      means[id].add(scratch, block.count, series.info.modulus_range, read(series, block, scratch.data()));
+      return true;
+    } catch (const Error&) {  // thrown again if the series is needed
+      means.erase(id);
+      return false;
+    }
+  }
+
   void read_numbers(int id, RecordBlock block, double* out) const {
     const FileInHand in_hand(file->path());
     file->read(id, block, out);
@@ -385,15 +393,6 @@ struct Flight::Implementation {
         file->refuse(Error::Code::time, ": the time of record {} is {}; remove that record", block.first + i,
                      utc_text(out[i]));
     }
-  }
-
-  bool begins_again_at_midnight(double before, double now) const {
-    constexpr double little = 600;
-    const double midnight = midnight_before(source.offset);
-    const double from = before - midnight, to = now - midnight;
-    const double last_midnight = std::floor(from / day) * day;
-    return from - last_midnight > day - little && to >= last_midnight && to < last_midnight + little &&
-           now + day > before;
   }
 
   void scan_time() {
@@ -415,7 +414,7 @@ struct Flight::Implementation {
       }
       for (std::size_t record = block.first; record < block.first + block.count; ++record) {
         for (std::size_t i = 0; i < axis.midnight_wraps.size(); ++i) times[record] += day;
-        if (record > 0 && begins_again_at_midnight(before, times[record])) {
+        if (record > 0 && begins_again_at_midnight(source, before, times[record])) {
           axis.midnight_wraps.push_back(record);
           times[record] += day;
         }
@@ -507,8 +506,9 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& re
 
 void Flight::require_values(const std::string& name) const {
   Variable& variable = implementation_->find_series(name);
+  if (const auto* kept = implementation_->kept_means(variable); kept && has_value(kept->values)) return;
   std::vector<double>& values = implementation_->scratch;
-  for (const RecordBlock block : blocks_of(records())) {
+  for (const RecordBlock block : blocks()) {
     values.resize(block.count * static_cast<std::size_t>(variable.info.rate));
     implementation_->read(variable, block, values.data());
     if (has_value(values)) return;
@@ -555,12 +555,29 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
     for (std::size_t i = 0; i < requested; ++i) out[i] = conversion(values[i / held]);
     return excluded;
   }
-  std::vector<double> group(static_cast<std::size_t>(own / rate));
-  const auto& circle = variable.info.modulus_range;
-  for (std::size_t i = 0; i < requested; ++i) {
-    std::copy_n(values.data() + i * group.size(), group.size(), group.begin());
-    out[i] = conversion(circle ? mean_on_circle(group, *circle) : mean_of(group));
+  average(values, requested, variable.info.modulus_range, out);
+  std::transform(out, out + requested, out, conversion);
+  return excluded;
+}
+
+void Flight::keep_means(std::set<std::string> names) const {
+  implementation_->means.clear();
+  for (const RecordBlock block : blocks()) {
+    for (auto name = names.begin(); name != names.end();)
+      name = implementation_->add_means(*name, block) ? std::next(name) : names.erase(name);
   }
+}
+
+RejectedCounts Flight::read_means(const std::string& name, const UnitConversion& conversion,
+                                  double* out) const {
+  const RecordMeans* const kept = implementation_->kept_means(implementation_->find_series(name));
+  if (kept != nullptr && kept->are_within(conversion)) {
+    std::transform(kept->values.begin(), kept->values.end(), out, conversion);
+    return kept->excluded;
+  }
+  RejectedCounts excluded;
+  for (const RecordBlock block : blocks_of(records()))
+    excluded += read_at_rate(1, name, block, conversion, out + block.first);
   return excluded;
 }
 

@@ -265,6 +265,15 @@ bool is_of_aviation(double time) {
   return time >= year_1900 && time < year_2200;
 }
 
+bool begins_again_at_midnight(const TimeSource& source, double before, double now) {
+  constexpr double little = 600;
+  const double midnight = midnight_before(source.offset);
+  const double from = before - midnight, to = now - midnight;
+  const double last_midnight = std::floor(from / day) * day;
+  return from - last_midnight > day - little && to >= last_midnight && to < last_midnight + little &&
+         now + day > before;
+}
+
 TimeSource find_time(const FlightFile& file) {
   const auto time = find_time_variable(file);
   const auto offset = file.find_variable("time_offset");

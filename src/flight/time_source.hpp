@@ -15,6 +15,10 @@ struct TimeSource {
 /// Whether a time, seconds since 1970 UTC, is of the years 1900 to 2199. No other flight is known.
 bool is_of_aviation(double time);
 
+/// Whether seconds of the day restart at zero between the times of two records: the second is a day too
+/// early.
+bool begins_again_at_midnight(const TimeSource& source, double before, double now);
+
 /// Finds the time variable, see Flight. @throws Error if the file has no records or no valid time.
 TimeSource find_time(const FlightFile& file);
 

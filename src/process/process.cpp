@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -72,6 +73,7 @@ class Processing {
     for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
     for (Note& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
     note_archive();
+    keep_means();
     for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes))
       inputs_.push_back({std::move(input)});
     for (const LoopInput& input : inputs_) names_.emplace(input.quantity, input.variable);
@@ -135,6 +137,23 @@ class Processing {
       roles_.push_back(role);
     }
     choose_chain();
+  }
+
+  /// Reads the series that are needed before the loop runs.
+  void keep_means() const {
+    std::set<std::string> names(chain_->extra_names().begin(), chain_->extra_names().end());
+    for (const Quantity role : roles_) {
+      if (chain_->needs(role) || is_always_read(role)) names.insert(file_.variables.at(role));
+    }
+    const VariableNaming& family = family_of(file_, flight_);
+    for (const auto* pairs : {&family.measured, &family.processed}) {
+      for (const PressurePair& pair : *pairs) names.insert({pair.static_pressure, pair.dynamic_pressure});
+    }
+    for (const Quantity role : {Quantity::altitude, Quantity::flaps, Quantity::recovery_temperature,
+                                Quantity::vertical_speed, Quantity::roll, Quantity::attack,
+                                Quantity::attack_differential_pressure, Quantity::radome_dynamic_pressure})
+      names.insert(series_of(flight_, file_, role));
+    flight_.keep_means(std::move(names));
   }
 
   void choose_chain() { chain_ = std::make_shared<const Chain>(chain_of(file_.model, roles_)); }

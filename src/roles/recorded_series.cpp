@@ -43,6 +43,10 @@ ReadValues read_values(const Flight& flight, const std::string& variable, const 
   const auto in_record = static_cast<std::size_t>(rate);
   ReadValues read;
   read.values.resize(flight.records() * in_record);
+  if (rate == 1) {
+    read.excluded = flight.read_means(variable, conversion, read.values.data());
+    return read;
+  }
   for (const RecordBlock block : blocks_of(flight.records())) {
     read.excluded +=
         flight.read_at_rate(rate, variable, block, conversion, read.values.data() + block.first * in_record);

@@ -833,6 +833,30 @@ TEST_F(FlightTest, ImpossibleValuesAreCountedAndExcluded) {
               ElementsAre(DoubleEq(80.1), DoubleEq(80.6), testing::_, testing::_, testing::_, testing::_));
 }
 
+TEST_F(FlightTest, KeptMeansEqualMeansThatAreRead) {
+  make({100, 101}, [&](NetcdfMaker& maker) {
+    maker.series("PSFD", "hPa", {800, 802, 9999, 806, 1e36, -32767}, 3);
+    maker.series("QCF", "hPa", {50, -32767});
+    maker.series("NONE", "hPa", {-32767, -32767});
+    maker.variable("OTHER", NC_FLOAT, {});
+  });
+  const Flight flight(path()), kept(path());
+  kept.keep_means({"PSFD", "QCF", "NONE", "OTHER", "ABSENT"});
+  // The second conversion rejects a sample of PSFD.
+  for (const UnitConversion& conversion : {UnitConversion(0.1, 1), UnitConversion(0.1, 0).within(1, 120)}) {
+    for (const char* name : {"PSFD", "QCF", "NONE"}) {
+      std::vector<double> expected(2), values(2);
+      const pcor::RejectedCounts rejected = flight.read_at_rate(1, name, {0, 2}, conversion, expected.data());
+      const pcor::RejectedCounts counted = kept.read_means(name, conversion, values.data());
+      for (int i = 0; i < 2; ++i) EXPECT_THAT(values[i], testing::NanSensitiveDoubleEq(expected[i])) << name;
+      EXPECT_EQ(counted.impossible, rejected.impossible) << name;
+      EXPECT_EQ(counted.enormous, rejected.enormous) << name;
+    }
+  }
+  EXPECT_FALSE(error_of([&] { kept.require_values("QCF"); }));
+  EXPECT_THAT(error_of([&] { kept.require_values("NONE"); }), IsError(Error::Code::variable, "no value"));
+}
+
 TEST_F(FlightTest, FlaggedUnusableValuesAreMissing) {
   make({0, 1, 2, 3}, [&](NetcdfMaker& file) {
     const auto series = [&](const std::string& name, int type, const std::vector<double>& values) {
