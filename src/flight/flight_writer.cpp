@@ -9,6 +9,7 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include <pcor/base/atomic_file.hpp>
@@ -80,7 +81,9 @@ struct FlightWriter::Implementation {
 
   int time_variable = 0;
   std::vector<Written> written;
+  std::map<std::string, Range> copied_ranges;  // of the coordinates
   std::vector<float> floats;
+  std::vector<double> copied_times, copied_values;  // of a block
   bool defining = true;
   std::size_t time_records = 0;
   double first_time = 0, last_time = 0;
@@ -210,6 +213,11 @@ struct FlightWriter::Implementation {
     if (!has_known_units()) put_text(global, "Conventions", conventions(false));
     file->end_definition();
     if (trajectory_id) file->variable(*trajectory_id).putVar(flight.c_str());
+    for (const GeospatialRange& each : geospatial_ranges) {
+      const std::string& name = description.*each.variable;
+      if (input && file->has(name) && input->has(name) && input->variable(name).is_series)
+        copied_ranges.emplace(name, Range());
+    }
   }
 
   std::string text_of(const std::string& name) const { return file->text_attribute(global, name); }
@@ -335,15 +343,29 @@ struct FlightWriter::Implementation {
     variable.records += block.count;
   }
 
-  /// Calls `visit` with each block of a time series of the input, and its values.
-  template <class Visit>
-  void each_block(const std::string& name, const Visit& visit) const {
-    std::vector<double> values;
-    for (const RecordBlock block : input->blocks()) {
-      values.resize(block.count * static_cast<std::size_t>(input->variable(name).rate));
-      input->read(name, block, UnitConversion(), values.data());
-      visit(block, values);
+  void copy_records(RecordBlock block) {
+    end_definition();
+    copied_times.resize(block.count);
+    input->read_time_stamps(block, copied_times.data());
+    write_time_stamps(block, copied_times.data());
+    if (copies) copies->copy_records(block);
+    for (const auto& [name, variable] : series) {
+      read_series(name, block);
+      std::replace_if(
+          copied_values.begin(), copied_values.end(), [](double value) { return std::isnan(value); }, fill);
+      file->variable(variable).putVar({block.first, 0}, {block.count, copied_values.size() / block.count},
+                                      copied_values.data());
     }
+    for (auto& [name, range] : copied_ranges) {
+      read_series(name, block);
+      for (const double value : copied_values)
+        if (!std::isnan(value)) range.include(value);
+    }
+  }
+
+  void read_series(const std::string& name, RecordBlock block) {
+    copied_values.resize(block.count * static_cast<std::size_t>(input->variable(name).rate));
+    input->read(name, block, UnitConversion(), copied_values.data());
   }
 
   // The end
@@ -351,13 +373,8 @@ struct FlightWriter::Implementation {
   Range range_of(const std::string& name) const {
     for (const Written& variable : written)
       if (variable.name == name && !variable.range.empty()) return variable.range;
-    Range range;
-    if (!input || !file->has(name) || !input->has(name) || !input->variable(name).is_series) return range;
-    each_block(name, [&range](RecordBlock, const std::vector<double>& values) {
-      for (const double value : values)
-        if (!std::isnan(value)) range.include(value);
-    });
-    return range;
+    const auto copied = copied_ranges.find(name);
+    return copied == copied_ranges.end() ? Range() : copied->second;
   }
 
   // A variable has both bounds in one attribute, the whole file in two. The attributes of an empty range are
@@ -375,20 +392,11 @@ struct FlightWriter::Implementation {
 
   void finish() {
     if (input) {
-      std::vector<double> times;
-      for (const RecordBlock block : input->blocks()) {
-        times.resize(block.count);
-        input->read_time_stamps(block, times.data());
-        write_time_stamps(block, times.data());
+      for (RecordBlock block : blocks_of(input->records() - time_records, input->file().records_at_once())) {
+        block.first = time_records;
+        copy_records(block);
       }
-      if (copies) copies->copy_values(input->records());
-      for (const auto& [name, variable] : series)
-        each_block(name, [this, id = variable](RecordBlock block, std::vector<double>& values) {
-          std::replace_if(
-              values.begin(), values.end(), [](double value) { return std::isnan(value); }, fill);
-          file->variable(id).putVar({block.first, 0}, {block.count, values.size() / block.count},
-                                    values.data());
-        });
+      if (copies) copies->copy_constants();
     }
     if (time_records == 0) file->refuse(Error::Code::samples, " would have no records; nothing was written");
     for (const Written& variable : written)
@@ -440,6 +448,10 @@ void FlightWriter::write_time_stamps(RecordBlock block, const double* times) {
 
 void FlightWriter::write(std::size_t variable, RecordBlock block, const double* values) {
   implementation_->file->attempt(writing, [&] { implementation_->write(variable, block, values); });
+}
+
+void FlightWriter::copy_records(RecordBlock block) {
+  implementation_->file->attempt(writing, [&] { implementation_->copy_records(block); });
 }
 
 void FlightWriter::finish() {

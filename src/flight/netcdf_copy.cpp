@@ -110,14 +110,15 @@ void NetcdfCopy::define(const std::string& name) {
   copied_.push_back(entry);
 }
 
-void NetcdfCopy::copy_block(const Copied& variable, RecordBlock block, std::vector<char>& buffer) const {
+void NetcdfCopy::copy_block(const Copied& variable, RecordBlock block) {
+  if (variable.record_bytes == 0) return;
   std::vector<std::size_t> start(variable.shape.size(), 0), count = variable.shape;
   if (variable.over_time) {
     start.insert(start.begin(), block.first);
     count.insert(count.begin(), block.count);
   }
-  buffer.resize((variable.over_time ? block.count : 1) * variable.record_bytes);
-  void* const values = buffer.data();  // any type
+  buffer_.resize((variable.over_time ? block.count : 1) * variable.record_bytes);
+  void* const values = buffer_.data();  // any type
   {
     const FileInHand in_hand(source_.path());
     source_.attempt("cannot read " + source_.variable_name(variable.from),
@@ -127,30 +128,14 @@ void NetcdfCopy::copy_block(const Copied& variable, RecordBlock block, std::vect
   output_.variable(variable.to).putVar(start, count, values);
 }
 
-void NetcdfCopy::copy_values(std::size_t records) const {
-  std::vector<Copied> series;
-  std::vector<char> buffer;
-  std::size_t bytes = 1;
-  for (const Copied& variable : copied_) {
-    if (variable.record_bytes == 0) continue;
-    if (!variable.over_time) {
-      copy_block(variable, {}, buffer);
-      continue;
-    }
-    series.push_back(variable);
-    bytes += variable.record_bytes;
-  }
-  // HDF5 holds chunks of each variable, so its variables come one after the other; records of classic files
-  // are moved together.
-  const bool has_records = !source_.is_hdf5() && source_.dimension(time_dimension_).isUnlimited();
-  if (has_records || !output_.is_hdf5()) {
-    for (const RecordBlock block :
-         blocks_of(records, std::min(records_in_buffer(bytes), source_.records_at_once())))
-      for (const Copied& variable : series) copy_block(variable, block, buffer);
-  } else {
-    for (const Copied& variable : series)
-      for (const RecordBlock block : blocks_of(records)) copy_block(variable, block, buffer);
-  }
+void NetcdfCopy::copy_constants() {
+  for (const Copied& variable : copied_)
+    if (!variable.over_time) copy_block(variable, {});
+}
+
+void NetcdfCopy::copy_records(RecordBlock block) {
+  for (const Copied& variable : copied_)
+    if (variable.over_time) copy_block(variable, block);
 }
 
 }  // namespace pcor::internal

@@ -24,8 +24,11 @@ class NetcdfCopy {
   /// Defines the variable in the output. @throws Error if it cannot be copied.
   void define(const std::string& name);
 
-  /// Copies the values of all variables that were defined.
-  void copy_values(std::size_t records) const;
+  /// Copies the values of the variables that were defined and have no time dimension.
+  void copy_constants();
+
+  /// Copies some records of all other variables that were defined.
+  void copy_records(RecordBlock block);
 
  private:
   struct Copied {
@@ -36,12 +39,13 @@ class NetcdfCopy {
   };
 
   void copy_attribute(int from, int to, const std::string& name, int type_of_variable) const;
-  void copy_block(const Copied& variable, RecordBlock block, std::vector<char>& buffer) const;
+  void copy_block(const Copied& variable, RecordBlock block);
 
   const NetcdfFile& source_;
   int time_dimension_;
   NetcdfOutput& output_;
   std::vector<Copied> copied_;
+  std::vector<char> buffer_;
 };
 
 }  // namespace pcor::internal

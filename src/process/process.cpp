@@ -95,6 +95,7 @@ class Processing {
       if (block.first + block.count == flight_.records()) flush();
       for (const auto line : {&results_, &filtered_})
         (*line)->write(writer, static_cast<std::size_t>(summary_.rate));
+      writer.copy_records(block);
       if (options_.progress) options_.progress(block.first + block.count, flight_.records());
     }
     refuse_uncorrected();

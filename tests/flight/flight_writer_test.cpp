@@ -210,6 +210,22 @@ TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
   EXPECT_THAT(file.values("PCORFLAG"), ElementsAre(0, 5));
 }
 
+TEST_F(FlightWriterTest, CopiesRecordsInBlocks) {
+  make_input_of(0);
+  const Flight flight(input);
+  FileDescription description;
+  description.latitude = "GGLAT";
+  FlightWriter writer(output, flight, description);
+  writer.copy("GGLAT");
+  writer.copy_records({0, 1});
+  writer.copy_records({1, 1});
+  writer.finish();
+  const Written file(output);
+  EXPECT_THAT(file.values("GGLAT"), ElementsAre(15.25, 15.5, -32767));
+  EXPECT_THAT(file.values("Time"), testing::SizeIs(flight.records()));
+  EXPECT_THAT(file.numbers("", "geospatial_lat_min"), ElementsAre(15.25));
+}
+
 TEST_F(FlightWriterTest, WritesGlobalAttributes) {
   make_input_of(NC_NETCDF4);
   const Flight flight(input);
