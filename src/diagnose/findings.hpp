@@ -32,7 +32,7 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
 std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                                   const std::vector<Finding>& findings);
 
-/// Probability from which a rival of a finding is considered as a cause and in the correction.
+/// Probability from which an alias of a finding is considered in the correction.
 inline constexpr double min_probability = 0.01;
 
 /// Whether a finding predicts held-out parts: their chi2 decreases by more than three standard errors.

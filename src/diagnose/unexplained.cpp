@@ -304,7 +304,7 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
 }
 
 /// Whether two series are images of each other: their correlation exceeds 0.95 in size. @param pair the two
-/// series of a local flight; null or empty if it lacks one
+/// series of a local flight; the second may be null or empty
 bool are_images(const Analysis& analysis,
                 const std::function<std::array<const std::vector<double>*, 2>(std::size_t flight)>& pair) {
   constexpr double image = 0.95;
@@ -404,10 +404,10 @@ std::vector<const Structure*> add_traced(const Analysis& analysis, const Structu
     if (variables.size() == max_variables) break;
     if (!named.insert(structure->name).second) continue;
     variables.push_back(predictor_of(*structure, tested.chance_of(structure->equivalent)));
-    const auto similar = std::find_if(traced.begin(), traced.end(), [&](const Structure* stronger) {
-      return is_image(analysis, *structure->variable, *stronger->variable);
-    });
-    if (similar != traced.end()) variables.back().similar_to = (*similar)->name;
+    for (std::size_t k = 0; k < traced.size() && variables.back().similar_to.empty(); ++k) {
+      if (variables[k].similar_to.empty() && is_image(analysis, *structure->variable, *traced[k]->variable))
+        variables.back().similar_to = variables[k].name;
+    }
     traced.push_back(structure);
     if (traced.size() > 1) continue;
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f)

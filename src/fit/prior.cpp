@@ -1,8 +1,11 @@
 #include "fit/prior.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/base/error.hpp>
 #include "campaign/candidate.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -26,6 +29,13 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
       stated.push_back(k);
     } else if (typical > 0.0) {
       rows(k, k) = 1.0 / typical;
+    } else if (task.options.fit_reference) {
+      throw Error(
+          Error::Code::model,
+          fmt::format(
+              "{} is 0 and has no error, so it has no prior for a fit of two systems: give a value, or its "
+              "error in stderr",
+              prior.name));
     }
   }
   if (stated.empty()) return rows;

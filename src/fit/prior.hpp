@@ -16,9 +16,10 @@ struct PriorRows {
 };
 
 /// If the fit uses a prior, it is centred on the values in the files, with the covariance stated in the
-/// files, otherwise with the typical size of the effect as the standard error. A parameter without either has
-/// no prior. Otherwise coefficients of the effects `RefitOptions::added` have the prior of a diagnosis about
-/// their neutral value. Coefficients of a surface always have the prior of its roughness.
+/// files, otherwise with the typical size of the effect as the standard error, for a formula the value
+/// itself. A parameter without any of these has no prior, which a fit of two systems refuses. Otherwise
+/// coefficients of the effects `RefitOptions::added` have the prior of a diagnosis about their neutral value.
+/// Coefficients of a surface always have the prior of its roughness.
 PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& requested);
 
 }  // namespace pcor::internal

@@ -156,12 +156,25 @@ void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
   }
 }
 
+/// The subset of parameters that belongs to the model, not to the reference.
+std::vector<std::size_t> own_parameters(const FitTask& task, std::vector<std::size_t> parameters) {
+  const std::size_t count = parameter_count(task.model.model);
+  parameters.erase(std::remove_if(parameters.begin(), parameters.end(),
+                                  [count](std::size_t parameter) { return parameter >= count; }),
+                   parameters.end());
+  return parameters;
+}
+
 Fitted fit_in_stages(FitTask& task) {
   Fitted fitted = at_start(task);
   Solution& solution = fitted.solution;
   constexpr int max_masks = 3;
   for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
+    // From there steps are short: a minimum of delta-p makes the residuals of two systems non-linear.
+    const std::vector<std::size_t> own = own_parameters(task, fitted.parameters);
+    if (task.options.fit_reference && round == 0 && !own.empty())
+      solution = solve(*fitted.flights, std::move(solution), own);
     solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
     if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
     // The masks are those of the solution, so that the start does not decide.

@@ -146,11 +146,11 @@ struct Flight::Implementation {
   std::size_t records;
   std::uintmax_t bytes;
   TimeAxis axis;
-  std::vector<double> times;  // of all records: of a classic file, reading them reads all of it
+  std::vector<double> times;  // all records, since reading them reads the whole of a classic file
   std::vector<std::string> names;
   std::vector<std::optional<Variable>> variables;  // requested names, in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
-  std::unordered_map<int, RecordMeans> means;  // by the id of the variable
+  std::unordered_map<int, RecordMeans> means;  // key: id of the variable
   std::vector<double> scratch;
   std::vector<double> flags;
 

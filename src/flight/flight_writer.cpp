@@ -81,9 +81,9 @@ struct FlightWriter::Implementation {
 
   int time_variable = 0;
   std::vector<Written> written;
-  std::map<std::string, Range> copied_ranges;  // of the coordinates
+  std::map<std::string, Range> copied_ranges;  // coordinates
   std::vector<float> floats;
-  std::vector<double> copied_times, copied_values;  // of a block
+  std::vector<double> copied_times, copied_values;  // one block
   bool defining = true;
   std::size_t time_records = 0;
   double first_time = 0, last_time = 0;

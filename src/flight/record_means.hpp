@@ -18,8 +18,8 @@ void average(const std::vector<double>& samples, std::size_t count,
 /// Means of a series over its records, before a conversion of its unit.
 struct RecordMeans {
   std::vector<double> values{};
-  double minimum = infinity;   ///< of the samples
-  double maximum = -infinity;  ///< of the samples
+  double minimum = infinity;   ///< smallest sample
+  double maximum = -infinity;  ///< largest sample
   RejectedCounts excluded{};
 
   /// Adds the next records.

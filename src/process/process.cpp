@@ -470,7 +470,7 @@ class Processing {
   const ModelDefinition& given_;
   ModelDefinition file_;  // model adapted to this flight
   const ProcessOptions& options_;
-  std::future<std::string> sha256_;  // of the input, computed by another thread
+  std::future<std::string> sha256_;  // input file; another thread computes it
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
   std::optional<Loop> loop_;

@@ -253,19 +253,21 @@ std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, cons
   flaps.out.resize(samples.time.size());
   std::vector<double> where_out;
   std::vector<double> where_in;
-  // A sample outside all pieces, for example in the first seconds after take-off, has the state of the piece
-  // nearest in time: flaps stay extended or retracted for minutes.
   const std::vector<double>& time = samples.time;
-  std::size_t next = 0;  // sample
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const Piece& piece = pieces[i];
     const bool is_out = piece.out > likely;
     (is_out ? where_out : where_in).push_back(piece.deficit.value);
-    const auto is_nearest = [&](std::size_t k) {
-      return i + 1 == pieces.size() || k < piece.end || time[k] - piece.time < pieces[i + 1].time - time[k];
-    };
-    for (; next < time.size() && is_nearest(next); ++next)
-      flaps.out[next] = is_out && samples.motion.airspeed[next] >= min_airspeed;
+    if (!is_out) continue;
+    // Samples next to a piece, for example in the first seconds after take-off, have its state.
+    double begin = time[piece.first] - piece_time;
+    double end = time[piece.end - 1] + piece_time;
+    if (i > 0) begin = std::max(begin, 0.5 * (time[pieces[i - 1].end - 1] + time[piece.first]));
+    if (i + 1 < pieces.size()) end = std::min(end, 0.5 * (time[piece.end - 1] + time[pieces[i + 1].first]));
+    const auto first = std::lower_bound(time.begin(), time.end(), begin) - time.begin();
+    const auto last = std::upper_bound(time.begin(), time.end(), end) - time.begin();
+    for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k)
+      flaps.out[k] = samples.motion.airspeed[k] >= min_airspeed;
   }
   flaps.deficit = where_out.empty() ? 0.0 : median(std::move(where_out));
   flaps.deviation = robust_standard_deviation(std::move(where_in));

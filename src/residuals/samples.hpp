@@ -66,7 +66,8 @@ struct FlapsByLift {
 /// relation, except for its error and one piece in a thousand with any value. The likelihood ratio of a piece
 /// is limited to a factor of 20, since neighbours share their errors, and above the speed limit of the flaps
 /// the state out becomes less probable with speed. Flaps are out if the probability is at least 90 %. A
-/// sample outside all pieces has the state of the piece nearest in time.
+/// sample outside all pieces has the state of the nearest one if that is within 20 s, otherwise it is not
+/// marked.
 ///
 /// Nullopt if fewer than 15 pieces are above that speed, or the angle does not increase with n/q.
 ///

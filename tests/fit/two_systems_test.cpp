@@ -147,10 +147,14 @@ TEST(TwoSystems, FormulasKeepTheirValuesAsPriorErrors) {
   }
   const pcor::RefitResult fit = fit_both(pair, pcor::test::simulated("c130-eq18"));
   for (const std::size_t constant : {0, 2}) {
-    EXPECT_NEAR(fit.parameters[constant].value, 3.0, 3.0);
-    // The mean of two constants with this prior error.
+    // The difference is determined, so both move by half of its error, 0.5 hPa, but not by the prior error of
+    // 3 hPa.
+    EXPECT_NEAR(fit.parameters[constant].value, 3.0, 1.5);
+    // The mean of two constants with this prior error; the difference adds a tenth.
     EXPECT_NEAR(fit.parameters[constant].standard_error, 3.0 / std::sqrt(2.0), 0.3);
   }
+  pair.own.model.effects[0].parameters[0] = 0.0;
+  EXPECT_THROW(fit_both(pair, pcor::test::simulated("c130-eq18")), pcor::Error);
 }
 
 TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {

@@ -440,8 +440,8 @@ TEST_F(Improve, KeepsTheModelIfTheReferenceMayBeWrong) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
 }
 
-// Shapes of nature differ from those of the catalogue, and then small differences of the likelihood mean
-// nothing.
+// Shapes of nature differ from those of the catalogue, and then small differences of the likelihood are not
+// evidence.
 TEST_F(Improve, AnImprobableAliasOnTheOtherSystemCounts) {
   const Improvement improvement = run({two_rivals("adif-drift", "reference:time-drift", 0.999)});
   EXPECT_THAT(added(improvement), ElementsAre(""));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -76,9 +77,29 @@ TEST(FlapsByLift, FirstSecondsAfterTakeOffHaveTheStateOfTheNextPiece) {
   for (std::size_t i = 0; i < 15; ++i) flight.samples.motion.airspeed[i] = 40.0;
   const std::optional<FlapsByLift> found = flight.found();
   ASSERT_TRUE(found);
-  EXPECT_EQ(std::count(found->out.begin(), found->out.begin() + 15, true), 0) << "on the ground";
+  EXPECT_EQ(std::count(found->out.begin(), found->out.begin() + 15, true), 0) << "ground";
   EXPECT_EQ(std::count(found->out.begin() + 15, found->out.begin() + 100, true), 85)
       << "5 of them in a piece of 20 s that is too short to be judged";
+}
+
+TEST(FlapsByLift, LongGapsOfTheAngleHaveNoExtendedFlaps) {
+  FlightWithFlaps flight(1, 50.0);
+  for (std::size_t i = 115; i < 1500; ++i) flight.attack[i] = std::numeric_limits<double>::quiet_NaN();
+  const std::optional<FlapsByLift> found = flight.found();
+  ASSERT_TRUE(found);
+  // The last piece ends at 120; flaps are marked for 20 s after it.
+  EXPECT_EQ(std::count(found->out.begin(), found->out.begin() + 120, true), 120);
+  EXPECT_LE(std::count(found->out.begin() + 120, found->out.begin() + 1500, true), 21);
+}
+
+TEST(FlapsByLift, AGapBeforeAPieceDoesNotChangeItsSamples) {
+  FlightWithFlaps flight(1, 50.0);
+  const std::optional<FlapsByLift> whole = flight.found();
+  for (std::size_t i = 5480; i < 5510; ++i) flight.attack[i] = std::numeric_limits<double>::quiet_NaN();
+  const std::optional<FlapsByLift> found = flight.found();
+  ASSERT_TRUE(whole && found);
+  EXPECT_EQ(std::count(found->out.begin() + 5520, found->out.end(), true),
+            std::count(whole->out.begin() + 5520, whole->out.end(), true));
 }
 
 TEST(FlapsByLift, SlowCleanFlightHasNoExtendedFlaps) {

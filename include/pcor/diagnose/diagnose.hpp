@@ -200,8 +200,7 @@ struct Finding {
   /// `largest_rms` with a unit and its reference: "0.440 hPa rms by total:PSFRD+QCFR".
   std::string size_text(const char* unit = " hPa rms") const;
 
-  /// Whether an effect on the static system of the model may be the cause: this one or an alias of at least
-  /// 1 % probability.
+  /// Whether an effect on the static system of the model may be the cause: this one or an alias.
   bool may_be_of_model() const;
   /// Whether an effect on the system of a reference may be the cause, likewise.
   bool may_be_of_reference() const;
@@ -309,7 +308,7 @@ struct EmpiricalPredictor {
   std::string formula{};   ///< formula of a corresponding effect, e.g. "k * (ENGTRQ - 48)"
   std::string sampling{};  ///< method of reduction to one value per record; empty if the file has one
   /// Stronger variable of the same list with a correlation above 0.95 in size, for example another record of
-  /// the same angle; empty if there is none.
+  /// the same angle; empty without such a variable.
   std::string similar_to{};
   /// Possible locations according to references independent of the static ports, e.g. "port", "laser"; empty
   /// if undetermined.
@@ -337,7 +336,7 @@ void describe(const EmpiricalPredictor& self, Field& field) {
   field("places", self.components, "possible instrument components; empty if undetermined");
   field("sampling", self.sampling, "reduction to one value per record");
   field("similar_to", self.similar_to,
-        "stronger variable of the list with a correlation above 0.95 in size; empty if no variable has one");
+        "stronger variable of the list with a correlation above 0.95 in size; empty without such a variable");
 }
 
 /// Clause on the location of the cause, without full stop.
@@ -366,7 +365,7 @@ struct Unexplained {
   double drift_rms = 0.0;  ///< part due to slow drift, uncorrelated with recorded variables, hPa
   double p_value = 1.0;
   std::string regime{};                         ///< regime with most of the structure, e.g. "climb"
-  std::vector<EmpiricalPredictor> variables{};  ///< sorted by decreasing strength
+  std::vector<EmpiricalPredictor> variables{};  ///< sorted by decreasing gain in likelihood
   std::vector<FlightOffset> steps{};            ///< significant offsets only, by decreasing size
   /// Excluded variables whose noise is correlated with that of the residual.
   std::vector<std::string> shares_noise{};
@@ -424,7 +423,7 @@ struct UnnamedRole {
 struct Diagnosis {
   Verdict verdict = Verdict::silent;
   std::string reference;
-  std::vector<Finding> findings{};  ///< sorted by decreasing strength
+  std::vector<Finding> findings{};  ///< sorted by decreasing gain in likelihood
   Unexplained unexplained;
   /// Variable of the files in which a straight line may be the cause in place of the findings, with a
   /// probability of 5 to 95 %; otherwise empty.

@@ -118,8 +118,8 @@ class FlightWriter {
   /// blocks of the input while these are read, the files are read and written once. Only with an input.
   void copy_records(RecordBlock block);
 
-  /// Copies what is left of the variables of `copy`, completes the attributes that depend on the data and
-  /// renames the file to the output.
+  /// Copies the remaining records of the variables of `copy`, completes the attributes that depend on the
+  /// data and renames the file to the output.
   /// @throws Error if a variable was not written for all records or the file cannot be completed.
   void finish();
 
