@@ -291,10 +291,15 @@ void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::str
                   {left, "drift"},
                   "residual"});
   add_table(variables_table(unexplained));
-  if (unexplained.variables.empty()) return;
-  const std::string& variable = unexplained.variables.front().name;
-  if (meet(report().columns, {variable_column(variable), left}))
-    add_binned("Remaining residual against " + variable, {left}, {variable_column(variable)});
+  add_against_traced(diagnosis, left);
+}
+
+void DiagnosisPanels::add_against_traced(const Diagnosis& diagnosis, const std::string& residual) {
+  if (has_traced_picture_ || diagnosis.unexplained.variables.empty()) return;
+  const std::string& variable = diagnosis.unexplained.variables.front().name;
+  has_traced_picture_ = meet(report().columns, {variable_column(variable), residual});
+  if (has_traced_picture_)
+    add_binned("Remaining residual against " + variable, {residual}, {variable_column(variable)});
 }
 
 void DiagnosisPanels::add_traced(const Diagnosis& diagnosis) {

@@ -50,6 +50,9 @@ class DiagnosisPanels : public FlightReport {
   /// Adds the variable with the most unexplained structure, if any, to the axes of residual plots.
   void add_traced(const Diagnosis& diagnosis);
 
+  /// Adds the picture of residuals against this variable, once.
+  void add_against_traced(const Diagnosis& diagnosis, const std::string& residual);
+
   /// Residuals against the variables; the existing variables of `first` are shown first. Error bars are by
   /// the noise of the last residual.
   /// @param y one residual, or the residuals before and after effects are added
@@ -97,6 +100,7 @@ class DiagnosisPanels : public FlightReport {
   void add_unexplained(const Diagnosis& diagnosis, const std::string& left);
 
   std::vector<std::string> variables_;
+  bool has_traced_picture_ = false;
 };
 
 }  // namespace pcor::internal::report

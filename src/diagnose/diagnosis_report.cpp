@@ -284,13 +284,16 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
     residuals.emplace_back("after");
   for (std::size_t i = 0; i < findings.size(); ++i)
     panels.add_finding_columns(diagnosis.flights, i, findings[i].id(), i);
+  if (found)
+    add_against_inputs(panels, diagnosis, residuals, 0);
+  else
+    panels.add_against_traced(diagnosis, "before");
   if (what_if != nullptr) {
     panels.add_what_if(*what_if, "before",
                        found ? inputs_of(findings.front().effect) : std::vector<std::string>{},
                        found ? diagnosis.noise_rms_with_findings : diagnosis.noise_rms,
                        found ? "noise with all findings" : "noise");
   }
-  if (found) add_against_inputs(panels, diagnosis, residuals, 0);
   panels.add_residuals(diagnosis, residuals);
   if (found) {
     add_findings(panels, diagnosis, residuals);

@@ -356,7 +356,7 @@ TEST(DiagnosisReport, ReportsStructureWithoutExplanation) {
   EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ): a curve explains 31 %")));
   const auto& variables = item<ReportTable>(report, "Variables that the unexplained structure varies with");
   EXPECT_THAT(variables.headers, ElementsAre("variable", "R2, curve", "R2, line", "slope of the line",
-                                             "hPa per", "p", "formula", "what"));
+                                             "hPa per", "p", "formula", "similar to", "what"));
   EXPECT_THAT(variables.caption, HasSubstr("p tests the curve"));
   const auto& binned = item<BinnedPanel>(report, "Remaining residual against ENGTRQ");
   EXPECT_EQ(binned.x_choices.front(), "variable ENGTRQ");
@@ -402,8 +402,9 @@ TEST(DiagnosisReport, WhatIfHasTheNoiseOfTheReport) {
   };
   EXPECT_EQ(panel_of().noise, 0.06);
   EXPECT_EQ(panel_of().noise_label, "noise with all findings");
-  EXPECT_TRUE(std::holds_alternative<WhatIfPanel>(
-      diagnosis_report(diagnosis, named_model(), &what_if).items.front()));
+  EXPECT_TRUE(
+      std::holds_alternative<BinnedPanel>(diagnosis_report(diagnosis, named_model(), &what_if).items.front()))
+      << "the residual against the inputs of the first finding";
   diagnosis.findings.clear();
   diagnosis.verdict = Verdict::silent;
   EXPECT_EQ(panel_of().noise, 0.081);
