@@ -568,11 +568,14 @@ void doubt_by_refit(Diagnosis& diagnosis) {
     const bool is_large = finding.rms > std::max(min_rms, 0.5 * finding.rms_before);
     const bool is_left =
         removed < 0.5 * finding.rms * finding.rms && finding.rms_after > 0.8 * finding.rms_before;
-    if (!is_large || !is_left) continue;
+    const bool is_worse = finding.rms_after > finding.rms_before;
+    if (!is_worse && !(is_large && is_left)) continue;
     diagnosis.notes.push_back(warning_note(
-        fmt::format("confirm {} of {:.3f} hPa with a further reference or flights: a refit with it changes "
-                    "the held-out rms from {:.3f} to {:.3f} hPa only, so slow variations contradict its size",
-                    finding.id(), finding.rms, finding.rms_before, finding.rms_after)));
+        fmt::format("confirm {} of {:.3f} hPa with a further reference or flights: a refit with it {} the "
+                    "held-out rms from "
+                    "{:.3f} to {:.3f} hPa{}",
+                    finding.id(), finding.rms, is_worse ? "increases" : "changes", finding.rms_before,
+                    finding.rms_after, is_worse ? "" : " only, so slow variations contradict its size")));
   }
 }
 

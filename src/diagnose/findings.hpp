@@ -49,7 +49,8 @@ void doubt_by_size(Diagnosis& diagnosis);
 
 /// The size of an effect is estimated together with drift, from its faster variations. A note warns of an
 /// effect of more than 0.05 hPa and half of the held-out rms if a refit with it decreases this rms by less
-/// than a fifth, and its square by less than half of the square of the size.
+/// than a fifth, and its square by less than half of the square of the size; and of any effect with which
+/// this rms increases.
 void doubt_by_refit(Diagnosis& diagnosis);
 
 /// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
