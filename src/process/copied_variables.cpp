@@ -43,7 +43,7 @@ void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDe
   if (description.altitude.rfind("PALT", 0) == 0) description.altitude_standard_name = "barometric_altitude";
 }
 
-std::string series_of(const Flight& flight, const ModelDefinition& model, Quantity role) {
+std::string series_name(const Flight& flight, const ModelDefinition& model, Quantity role) {
   const VariableNaming& family = family_of(model, flight);
   Names names = role == Quantity::altitude ? usual_heights(family) : usual_variables(family, role);
   names.insert(names.begin(), model.variable_of(role));
@@ -52,7 +52,7 @@ std::string series_of(const Flight& flight, const ModelDefinition& model, Quanti
 
 Names flown_variables(const Flight& flight, const ModelDefinition& model) {
   Names flown;
-  for (const Quantity role : flown_quantities) flown.push_back(series_of(flight, model, role));
+  for (const Quantity role : flown_quantities) flown.push_back(series_name(flight, model, role));
   const VariableNaming& family = family_of(model, flight);
   for (const char* velocity : {"ground_speed_east", "ground_speed_north"})
     flown.push_back(first_series(flight, family.names_of(velocity)));

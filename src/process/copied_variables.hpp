@@ -10,8 +10,8 @@ namespace pcor::internal {
 /// ones. Empty if absent.
 void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDescription& description);
 
-/// The time series of a role: the model's variable, otherwise the first usual one; empty if absent.
-std::string series_of(const Flight& flight, const ModelDefinition& model, Quantity role);
+/// Name of the time series of a role: the model's variable, otherwise the first usual one; empty if absent.
+std::string series_name(const Flight& flight, const ModelDefinition& model, Quantity role);
 
 /// Available inputs of a temperature fit other than those of the model: height, position and motion.
 Names flown_variables(const Flight& flight, const ModelDefinition& model);

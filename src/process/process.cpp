@@ -53,11 +53,7 @@ double flying_dynamic_pressure(const std::string& aircraft) {
 class Processing {
  public:
   Processing(const std::filesystem::path& input, const ModelDefinition& file, const ProcessOptions& options)
-      : flight_(input, options.timestamp_alignment),
-        given_(file),
-        file_(file),
-        options_(options),
-        sha256_(std::async(sha256_of_file, flight_.path())) {}
+      : flight_(input, options.timestamp_alignment), given_(file), file_(file), options_(options) {}
 
   ProcessSummary run(const std::filesystem::path& output) {
     summary_.aircraft = flight_.aircraft();
@@ -73,6 +69,8 @@ class Processing {
     for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
     for (Note& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
     note_archive();
+    // After the checks of variables: an error would wait for the end of this thread.
+    sha256_ = std::async(sha256_of_file, flight_.path());
     keep_means();
     for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes))
       inputs_.push_back({std::move(input)});
@@ -153,7 +151,7 @@ class Processing {
     for (const Quantity role : {Quantity::altitude, Quantity::flaps, Quantity::recovery_temperature,
                                 Quantity::vertical_speed, Quantity::roll, Quantity::attack,
                                 Quantity::attack_differential_pressure, Quantity::radome_dynamic_pressure})
-      names.insert(series_of(flight_, file_, role));
+      names.insert(series_name(flight_, file_, role));
     flight_.keep_means(std::move(names));
   }
 
