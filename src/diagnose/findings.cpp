@@ -572,8 +572,7 @@ void doubt_by_refit(Diagnosis& diagnosis) {
     if (!is_worse && !(is_large && is_left)) continue;
     diagnosis.notes.push_back(warning_note(
         fmt::format("confirm {} of {:.3f} hPa with a further reference or flights: a refit with it {} the "
-                    "held-out rms from "
-                    "{:.3f} to {:.3f} hPa{}",
+                    "held-out rms from {:.3f} to {:.3f} hPa{}",
                     finding.id(), finding.rms, is_worse ? "increases" : "changes", finding.rms_before,
                     finding.rms_after, is_worse ? "" : " only, so slow variations contradict its size")));
   }
