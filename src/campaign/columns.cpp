@@ -14,7 +14,9 @@
 #include "campaign/model_parameters.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "parallel/packed.hpp"
 #include "residuals/moving_columns.hpp"
+#include "residuals/packed_residuals.hpp"
 #include "roles/model_inputs.hpp"
 
 namespace pcor::internal {
@@ -328,6 +330,23 @@ void FlightColumns::keep_candidates(const std::vector<Eigen::Index>& kept) {
   gps.keep(kept, base.cols(), candidates.cols());
   candidates = Eigen::MatrixXf(candidates(Eigen::all, kept));
 }
+
+namespace {
+
+template <class Archive, class Columns>
+void archive_members(Archive& archive, Columns& columns) {
+  archive(columns.file, columns.reference, columns.window, columns.samples, columns.mask, columns.given,
+          columns.residual, columns.exact, columns.flaps_out, columns.base, columns.candidates,
+          columns.is_by_gps, columns.gps, columns.quantities, columns.corrected_pressure);
+}
+
+}  // namespace
+
+void save(cereal::BinaryOutputArchive& archive, const FlightColumns& columns) {
+  archive_members(archive, columns);
+}
+
+void load(cereal::BinaryInputArchive& archive, FlightColumns& columns) { archive_members(archive, columns); }
 
 FlightColumns outline_of(const FlightColumns& flight) {
   FlightColumns outline;

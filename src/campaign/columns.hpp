@@ -13,7 +13,6 @@
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
 #include "parallel/flight_partition.hpp"
-#include "residuals/packed_residuals.hpp"
 
 namespace pcor::internal {
 
@@ -50,13 +49,11 @@ struct FlightColumns {
   void keep_base(const std::vector<Eigen::Index>& kept);
   /// Leaves out the other columns of candidates. @param kept numbers from the first candidate's column
   void keep_candidates(const std::vector<Eigen::Index>& kept);
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(file, reference, window, samples, mask, given, residual, exact, flaps_out, base, candidates,
-            is_by_gps, gps, quantities, corrected_pressure);
-  }
 };
+
+/// Serialization of columns for other ranks.
+void save(cereal::BinaryOutputArchive& archive, const FlightColumns& columns);
+void load(cereal::BinaryInputArchive& archive, FlightColumns& columns);
 
 /// Copy without records: the part known on ranks that do not own the flight.
 FlightColumns outline_of(const FlightColumns& flight);

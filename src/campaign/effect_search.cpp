@@ -387,12 +387,12 @@ double EffectSearch::log_ratio(const std::vector<Eigen::Index>& columns,
                                const Eigen::VectorXd& precision) const {
   const Eigen::VectorXd deviation = precision.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inner = deviation.asDiagonal() * left_(columns, columns) * deviation.asDiagonal();
-  const Eigen::LLT<Eigen::MatrixXd> factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
+  const Cholesky factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
   const Eigen::VectorXd right = deviation.cwiseProduct(left_score_(columns));
   const double explained = right.dot(factor.solve(right));
   const double freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_);
-  const double determinant = factor.matrixLLT().diagonal().array().log().sum();
-  return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) - determinant;
+  return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) -
+         0.5 * factor.log_determinant();
 }
 
 double EffectSearch::evidence(const std::vector<std::size_t>& set,

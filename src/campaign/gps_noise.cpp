@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pcor/physics/constants.hpp>
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -147,20 +148,17 @@ struct ColumnFit {
 
 ColumnFit fit_of(const WhiteRows& white, const GpsPrior& prior) {
   const Eigen::Index count = white.rows.cols() - 1;
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(count + 1, count + 1);
-  products.selfadjointView<Eigen::Lower>().rankUpdate(white.rows.transpose());
-  products.triangularView<Eigen::StrictlyUpper>() = products.transpose();
+  const Eigen::MatrixXd products = products_of(white.rows);
   // In units of the prior the matrix does not depend on the units of the columns.
   const Eigen::VectorXd& unit = prior.deviation;
   Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
   matrix.diagonal().array() += 1.0;
   const Eigen::VectorXd mean = prior.mean.cwiseQuotient(unit);
   const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
-  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+  const Cholesky factor(matrix);
   const Eigen::VectorXd best = factor.solve(right);
   return {unit.cwiseProduct(best), white.log_determinant + products(count, count) + mean.squaredNorm() -
-                                       right.dot(best) +
-                                       2.0 * factor.matrixLLT().diagonal().array().log().sum()};
+                                       right.dot(best) + factor.log_determinant()};
 }
 
 /// Whitened residual after the fit of columns with these coefficients.
@@ -246,7 +244,7 @@ void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const 
   if (!std::isfinite(trial.cost)) return;
   for (int number = 0; number < max_steps; ++number) {
     const Slope slope = slope_at(trial, rows, more, prior);
-    Eigen::VectorXd step = slope.information.ldlt().solve(-slope.gradient);
+    Eigen::VectorXd step = symmetric_solution(slope.information, Eigen::VectorXd(-slope.gradient));
     const double expected = -0.5 * slope.gradient.dot(step);
     if (!(expected > enough)) break;
     // The information is that of small steps: no size changes by more than a factor of e.

@@ -34,7 +34,7 @@ Eigen::MatrixXd eliminate_own(const Eigen::MatrixXd& white) {
   own.bottomRows(own_nuisances).setIdentity();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size + own_nuisances, kept + 1);
   rows.topRows(size) << white.leftCols(kept), white.rightCols(1);
-  rows.noalias() -= own * (own.transpose() * own).ldlt().solve(own.transpose() * rows);
+  rows.noalias() -= own * symmetric_solution(own.transpose() * own, Eigen::MatrixXd(own.transpose() * rows));
   return rows;
 }
 

@@ -185,7 +185,7 @@ void marginalize(WhitenedSystem& system, Eigen::Index count) {
   const Eigen::MatrixXd across = system.information(kept, Eigen::all).middleCols(first, count);
   Eigen::MatrixXd inner = system.information.block(first, first, count, count);
   inner.diagonal().array() += 1.0;
-  const Eigen::MatrixXd fit = Eigen::LLT<Eigen::MatrixXd>(inner).solve(across.transpose());
+  const Eigen::MatrixXd fit = symmetric_solution(inner, Eigen::MatrixXd(across.transpose()));
   system.information = (system.information(kept, kept) - across * fit).eval();
   system.plain = system.plain(kept, kept).eval();
   for (Eigen::MatrixXd& rows : system.rows) {

@@ -370,20 +370,17 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   }
   const Eigen::MatrixXd covariance = covariance_of(flights, count);
   // Whitened by the covariance, the line is ordinary least squares.
-  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
-  const auto whitened = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
-    return root.matrixL().solve(column);
-  };
-  const Eigen::VectorXd y = whitened(differences);
-  const Eigen::VectorXd ones = whitened(Eigen::VectorXd::Ones(count));
+  const Cholesky root(covariance);
+  const Eigen::VectorXd y = root.whiten(differences);
+  const Eigen::VectorXd ones = root.whiten(Eigen::VectorXd(Eigen::VectorXd::Ones(count)));
   const double weight = ones.squaredNorm();
   const double mean = ones.dot(y) / weight;
   Eigen::VectorXd rest = y - mean * ones;
   fit.offset = {mean, 1.0 / std::sqrt(weight)};
   std::size_t degrees_of_freedom = fit.layers - 1;
   if (fit.layers >= 3 && temperatures.maxCoeff() - temperatures.minCoeff() >= min_range) {
-    fit.centre = ones.dot(whitened(temperatures)) / weight;
-    const Eigen::VectorXd tilted = whitened((temperatures.array() - fit.centre).matrix());
+    fit.centre = ones.dot(root.whiten(temperatures)) / weight;
+    const Eigen::VectorXd tilted = root.whiten(Eigen::VectorXd(temperatures.array() - fit.centre));
     fit.c0 = fit.offset;
     fit.c1 = {tilted.dot(y) / tilted.squaredNorm(), 1.0 / tilted.norm()};
     fit.offset = fit.correction_at(temperatures.mean());

@@ -119,14 +119,13 @@ bool FitFlights::has_moving_columns() const {
 }
 
 void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>& work) {
-  share().visit(
-      task_.threads(), [](std::size_t) { return true; },
-      [this](std::size_t number) {
-        return task_.flights.samples(number, task_.model, task_.reference, task_.options.mask);
-      },
-      [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
-        work(number, FitFlight(std::move(samples), task_, setup_, prepared_, masks_of_flights_[number]));
-      });
+  share().visit(task_.threads(), [&](std::size_t number) {
+    return [&, number,
+            samples =
+                task_.flights.samples(number, task_.model, task_.reference, task_.options.mask)]() mutable {
+      work(number, FitFlight(std::move(samples), task_, setup_, prepared_, masks_of_flights_[number]));
+    };
+  });
 }
 
 std::vector<Eigen::MatrixXd> FitFlights::of_local(

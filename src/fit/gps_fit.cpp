@@ -206,8 +206,8 @@ class GpsSolver {
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
-      without.middleRows(size, own) =
-          -sum.block(size, size, own, own).ldlt().solve(sum.block(size, 0, own, all() + 1) * without);
+      without.middleRows(size, own) = -symmetric_solution(
+          sum.block(size, size, own, own), Eigen::MatrixXd(sum.block(size, 0, own, all() + 1) * without));
       const std::int64_t middle = (blocks.begin()->first + blocks.rbegin()->first) / 2;
       std::vector<Eigen::MatrixXd> halves(2 * flights_.size(), Eigen::MatrixXd::Zero(size + 1, size + 1));
       for (const auto& [block, of_references] : blocks) {
@@ -260,7 +260,7 @@ class GpsSolver {
     const Eigen::MatrixXd cross = matrix_.bottomLeftCorner(gps_shared_nuisances, count_);
     const Eigen::MatrixXd information =
         prior_deviation_.asDiagonal() *
-        (matrix_.topLeftCorner(count_, count_) - cross.transpose() * nuisances.ldlt().solve(cross)) *
+        (matrix_.topLeftCorner(count_, count_) - cross.transpose() * symmetric_solution(nuisances, cross)) *
         prior_deviation_.asDiagonal();
     const SymmetricEigen eigen(information);
     std::vector<Eigen::Index> known;
@@ -285,14 +285,14 @@ class GpsSolver {
     if (held_.cols() == 0) return identity;
     Eigen::MatrixXd squares = held_.transpose() * defects_ * held_;
     squares.diagonal().array() += 1e-9 * std::max(squares.trace(), 1e-300);
-    return identity - held_ * squares.ldlt().solve(held_.transpose() * defects_);
+    return identity - held_ * symmetric_solution(squares, Eigen::MatrixXd(held_.transpose() * defects_));
   }
 
   /// Step of the coefficients to the optimum of flights and prior.
   void step() {
     find_free();
     prior_ = prior_covariance();
-    posterior_ = (identity() + prior_ * matrix_).partialPivLu().solve(prior_);
+    posterior_ = solution_of(identity() + prior_ * matrix_, prior_);
     Eigen::VectorXd from = Eigen::VectorXd::Zero(shared());
     from.head(count_) = requested_values() - before_;
     change_ = posterior_ * (right_ + matrix_ * from);
@@ -373,7 +373,7 @@ class GpsSolver {
     for (const Eigen::MatrixXd& products : products_) {
       const Eigen::MatrixXd others = matrix_ - products.topLeftCorner(shared(), shared());
       const Eigen::VectorXd score = (products * residual_weights).head(shared());
-      const Eigen::VectorXd without = (identity() + prior_ * others).partialPivLu().solve(prior_ * score);
+      const Eigen::VectorXd without = solution_of(identity() + prior_ * others, prior_ * score);
       sandwich += without * without.transpose();
     }
     covariance_.blocks = products_.size();

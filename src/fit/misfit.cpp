@@ -68,12 +68,11 @@ Posterior posterior_of(const Eigen::MatrixXd& left, const Eigen::VectorXd& varia
   const Eigen::VectorXd size = variance.cwiseSqrt();
   Eigen::MatrixXd inner = size.asDiagonal() * left.topLeftCorner(count, count) * size.asDiagonal();
   inner.diagonal().array() += 1.0;
-  const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+  const Cholesky factor(inner);
   const Eigen::MatrixXd covariance = size.asDiagonal() * factor.solve(Eigen::MatrixXd(size.asDiagonal()));
   const Eigen::VectorXd right = left.col(count).head(count);
   const Eigen::VectorXd mean = covariance * right;
-  const double logarithm = factor.matrixLLT().diagonal().array().log().sum();  // half the log determinant
-  return {covariance, mean, 0.5 * right.dot(mean) - logarithm};
+  return {covariance, mean, 0.5 * (right.dot(mean) - factor.log_determinant())};
 }
 
 constexpr double min_bump = 1e-3;  // size of a bump over the rms of the residual, practically zero

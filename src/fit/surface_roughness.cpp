@@ -108,8 +108,7 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
       return rows(Eigen::all, coefficients).transpose() * rows(Eigen::all, coefficients);
     };
-    const Eigen::LLT<Eigen::MatrixXd> now(found.information +
-                                          unit * surface.inflation * precision(surface.rows()));
+    const Cholesky now(found.information + unit * surface.inflation * precision(surface.rows()));
     const double inflation =
         std::max(1.0, now.solve(found.noise).trace() / (unit * now.solve(found.information).trace()));
     changed = changed || std::abs(std::log(inflation / surface.inflation)) > 0.2;
@@ -123,11 +122,10 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
     for (double size = min_size; size < 1.1 * max_size; size *= next_size) {
       for (double coefficient = min_size; coefficient < 1.1 * max_size; coefficient *= next_size) {
         const Eigen::MatrixXd prior = of_differences / (size * size) + identity / (coefficient * coefficient);
-        const Eigen::LLT<Eigen::MatrixXd> alone(prior);
-        const Eigen::LLT<Eigen::MatrixXd> factor(weight * found.information + prior);
+        const Cholesky alone(prior);
+        const Cholesky factor(weight * found.information + prior);
         const double gain = 0.5 * weight * weight * found.right.dot(factor.solve(found.right)) +
-                            alone.matrixLLT().diagonal().array().log().sum() -
-                            factor.matrixLLT().diagonal().array().log().sum();
+                            0.5 * (alone.log_determinant() - factor.log_determinant());
         if (!(gain > best)) continue;
         best = gain;
         surface.size = size;

@@ -12,6 +12,7 @@
 #include "campaign/gps_noise.hpp"
 #include "campaign/gps_rows.hpp"
 #include "campaign/gps_system.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
@@ -78,8 +79,7 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
     }
   }
   if (!design.by_wind && !design.by_height) return std::nullopt;
-  const Eigen::MatrixXd covariance =
-      information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  const Eigen::MatrixXd covariance = inverse_of(information);
   const Eigen::RowVectorXd mean = defects.colwise().mean();
   // Heights do not determine a delta-p proportional to the pressure: it belongs to the level.
   const Eigen::VectorXd level =

@@ -20,6 +20,13 @@ using namespace internal;
 
 namespace fs = std::filesystem;
 
+ModelDefinition::ModelDefinition() = default;
+ModelDefinition::ModelDefinition(const ModelDefinition&) = default;
+ModelDefinition::ModelDefinition(ModelDefinition&&) noexcept = default;
+ModelDefinition& ModelDefinition::operator=(const ModelDefinition&) = default;
+ModelDefinition& ModelDefinition::operator=(ModelDefinition&&) noexcept = default;
+ModelDefinition::~ModelDefinition() = default;
+
 void set_entry(Provenance& provenance, const std::string& key, ProvenanceValue value) {
   erase_entry(provenance, key);
   provenance.emplace_back(key, std::move(value));

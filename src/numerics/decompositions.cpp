@@ -115,6 +115,37 @@ Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::V
   return matrix.ldlt().solve(right);
 }
 
+Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  return matrix.ldlt().solve(right);
+}
+
+Eigen::MatrixXd solution_of(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right) {
+  return matrix.partialPivLu().solve(right);
+}
+
+Cholesky::Cholesky(const Eigen::MatrixXd& matrix) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+  lower_ = factor.matrixL();
+  log_determinant_ = 2.0 * lower_.diagonal().array().log().sum();
+  is_positive_definite_ = factor.info() == Eigen::Success;
+}
+
+Eigen::VectorXd Cholesky::solve(const Eigen::VectorXd& right) const {
+  return lower_.triangularView<Eigen::Lower>().adjoint().solve(whiten(right));
+}
+
+Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& right) const {
+  return lower_.triangularView<Eigen::Lower>().adjoint().solve(whiten(right));
+}
+
+Eigen::VectorXd Cholesky::whiten(const Eigen::VectorXd& right) const {
+  return lower_.triangularView<Eigen::Lower>().solve(right);
+}
+
+Eigen::MatrixXd Cholesky::whiten(const Eigen::MatrixXd& right) const {
+  return lower_.triangularView<Eigen::Lower>().solve(right);
+}
+
 Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right) {
   return rows.completeOrthogonalDecomposition().solve(right);
 }

@@ -66,8 +66,36 @@ Eigen::MatrixXd products_after(const Eigen::MatrixXd& products, Eigen::Index cou
 /// Moore-Penrose inverse, without the directions whose singular values are zero within rounding errors.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
-/// The x with matrix x = right, for a symmetric positive definite matrix.
+/// The X with matrix X = right, for a symmetric positive definite matrix.
 Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+Eigen::MatrixXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
+
+/// The X with matrix X = right, for a regular matrix.
+Eigen::MatrixXd solution_of(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& right);
+
+/// Factor L of a symmetric positive definite matrix, L L' = matrix.
+class Cholesky {
+ public:
+  explicit Cholesky(const Eigen::MatrixXd& matrix);
+
+  /// If false, the other results have no meaning.
+  bool is_positive_definite() const { return is_positive_definite_; }
+  /// L; its upper triangle is zero.
+  const Eigen::MatrixXd& lower() const { return lower_; }
+  double log_determinant() const { return log_determinant_; }  ///< of the matrix
+
+  /// The X with matrix X = right.
+  Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  /// L^-1 right, whose covariance is the identity if that of `right` is the matrix.
+  Eigen::VectorXd whiten(const Eigen::VectorXd& right) const;
+  Eigen::MatrixXd whiten(const Eigen::MatrixXd& right) const;
+
+ private:
+  Eigen::MatrixXd lower_;
+  double log_determinant_;
+  bool is_positive_definite_;
+};
 
 /// The x with the least |rows x - right|; of several the shortest.
 Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right);

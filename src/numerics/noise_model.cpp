@@ -68,7 +68,8 @@ Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residu
   auto [shapes, normal] = drift_shapes(bins);
   if (shapes.cols() == 0) return residual;
   normal.diagonal().array() += 1e-9 * normal.trace();
-  return residual - shapes * symmetric_solution(normal, shapes.transpose() * residual);
+  const Eigen::VectorXd projected = shapes.transpose() * residual;
+  return residual - shapes * symmetric_solution(normal, projected);
 }
 
 /// The residual of one of several flights, moved to the mean of all.

@@ -1,8 +1,24 @@
 #include "parallel/flight_partition.hpp"
 
+#include <deque>
+#include <future>
 #include <numeric>
 
 namespace pcor {
+
+namespace {
+
+/// @throws FlightError for an error of the work on a flight
+template <class Work>
+void attempt_flight(std::size_t flight, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    throw internal::FlightError(error, flight);
+  }
+}
+
+}  // namespace
 
 FlightPartition::FlightPartition(std::size_t flights) : comm_(&serial_communicator()), owner_(flights, 0) {}
 
@@ -37,6 +53,53 @@ FlightPartition FlightPartition::part(std::size_t first, std::size_t count) cons
   std::vector<std::size_t> flights(count);
   std::iota(flights.begin(), flights.end(), first);
   return of_entries(flights);
+}
+
+void FlightPartition::attempt(const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const internal::FlightError& error) {
+    comm_->fail(error, error.flight() + 1);
+  } catch (const Error& error) {
+    comm_->fail(error, 0);
+  }
+}
+
+void FlightPartition::visit(std::size_t threads,
+                            const std::function<std::function<void()>(std::size_t flight)>& prepare) const {
+  std::deque<std::pair<std::size_t, std::future<void>>> working;
+  const auto finish_first = [&working] {
+    auto [flight, result] = std::move(working.front());
+    working.pop_front();
+    attempt_flight(flight, [&result = result] { result.get(); });
+  };
+  const auto policy = threads > 1 ? std::launch::async : std::launch::deferred;
+  for (std::size_t flight = 0; flight < flights(); ++flight) {
+    if (!is_local(flight)) continue;
+    std::function<void()> work;
+    try {
+      attempt_flight(flight, [&] { work = prepare(flight); });
+    } catch (const internal::FlightError&) {
+      while (!working.empty()) finish_first();  // an earlier flight fails first
+      throw;
+    }
+    if (!work) continue;
+    if (working.size() == threads) finish_first();
+    working.emplace_back(flight, std::async(policy, std::move(work)));
+    if (threads == 1) finish_first();
+  }
+  while (!working.empty()) finish_first();
+}
+
+void FlightPartition::gather(const std::function<std::string(std::size_t)>& packed, std::uint64_t state,
+                             const std::function<void(std::size_t, internal::Unpacking&)>& take) const {
+  std::string bytes;
+  for (std::size_t flight = 0; flight < flights(); ++flight) {
+    if (is_local(flight)) bytes += packed(flight);
+  }
+  const std::vector<std::string> all = comm_->gather(bytes, state);
+  std::deque<internal::Unpacking> ranks(all.begin(), all.end());
+  for (std::size_t flight = 0; flight < flights(); ++flight) take(flight, ranks[owner_[flight]]);
 }
 
 namespace internal {

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <functional>
-#include <future>
-#include <optional>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
@@ -65,74 +63,46 @@ class FlightPartition {
   FlightPartition part(std::size_t first, std::size_t count) const;
 
   /// Work on the flights of this rank. If it fails, all ranks fail at their next exchange.
-  template <class Work>
-  void attempt(const Work& work) const {
-    try {
-      work();
-    } catch (const internal::FlightError& error) {
-      comm_->fail(error, error.flight() + 1);
-    } catch (const Error& error) {
-      comm_->fail(error, 0);
-    }
-  }
+  void attempt(const std::function<void()>& work) const;
 
   /// Results of all flights, in their order, on every rank: one exchange.
   /// @param visit gets the list of all parts, and sets the parts of the flights of this rank
   /// @param state on which the ranks must agree
   /// @throws Error of the first flight that failed, on any rank
-  template <class Part, class Visit>
-  std::vector<Part> gather_flights(const Visit& visit, std::uint64_t state = 0) const {
+  template <class Part>
+  std::vector<Part> gather_flights(const std::function<void(std::vector<Part>&)>& visit,
+                                   std::uint64_t state = 0) const {
     std::vector<Part> parts(flights());
     attempt([&] { visit(parts); });
-    if (comm_->size() > 1) {
-      std::vector<Part> own;
-      for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-        if (is_local(flight)) own.push_back(std::move(parts[flight]));
-      }
-      gather(std::move(own), state,
-             [&parts](std::size_t flight, Part part) { parts[flight] = std::move(part); });
-    }
+    if (comm_->size() > 1)
+      gather(
+          [&parts](std::size_t flight) {
+            const Part own = std::move(parts[flight]);
+            return internal::packed(own);
+          },
+          internal::digest_of(typeid(Part).name(), state + flights()),
+          [&parts](std::size_t flight, internal::Unpacking& rank) { parts[flight] = rank.next<Part>(); });
     return parts;
   }
 
-  /// Visits the flights of this rank in threads. @param chosen returns whether to visit a flight
-  /// @param read returns the content of a flight; it is called in this thread, in the order of the flights
-  /// @param work gets a flight and its content; it is called by up to `threads` threads
+  /// Visits the flights of this rank in threads.
+  /// @param prepare returns the work on a flight, or an empty function for none; it is called in this thread,
+  /// in the order of the flights, and its works by up to `threads` threads
   /// @throws FlightError of the first flight that failed
-  template <class Read, class Work>
-  void visit(std::size_t threads, const std::function<bool(std::size_t)>& chosen, const Read& read,
-             const Work& work) const {
-    std::deque<std::pair<std::size_t, std::future<void>>> working;
-    const auto finish_first = [&working] {
-      auto first = std::move(working.front());
-      working.pop_front();
-      part_of([&first](std::size_t) { first.second.get(); }, first.first);
-    };
-    const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
-    for (std::size_t flight = 0; flight < flights(); ++flight) {
-      if (!is_local(flight) || !chosen(flight)) continue;
-      std::optional<decltype(read(flight))> input;
-      try {
-        input = part_of(read, flight);
-      } catch (const internal::FlightError&) {
-        while (!working.empty()) finish_first();  // an earlier flight fails first
-        throw;
-      }
-      if (working.size() == threads) finish_first();
-      working.emplace_back(flight, std::async(how, work, flight, std::move(*input)));
-      if (threads == 1) finish_first();
-    }
-    while (!working.empty()) finish_first();
-  }
+  void visit(std::size_t threads,
+             const std::function<std::function<void()>(std::size_t flight)>& prepare) const;
 
-  /// Like `gather_flights`, with threads, from the content of each flight. @param read as in `visit`
+  /// Like `of_each_flight`, from the content of each flight. @param read returns the content of a flight; it
+  /// is called in this thread, in the order of the flights
   /// @param make returns the part of a flight from its number and content
   template <class Part, class Read, class Make>
   std::vector<Part> map(std::size_t threads, const Read& read, const Make& make) const {
     return gather_flights<Part>([&](std::vector<Part>& parts) {
-      visit(
-          threads, [](std::size_t) { return true; }, read,
-          [&](std::size_t flight, auto input) { parts[flight] = make(flight, std::move(input)); });
+      visit(threads, [&](std::size_t flight) {
+        return [&, flight, input = std::make_shared<decltype(read(flight))>(read(flight))] {
+          parts[flight] = make(flight, std::move(*input));
+        };
+      });
     });
   }
 
@@ -143,9 +113,7 @@ class FlightPartition {
     static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
     return gather_flights<Part>(
         [&](std::vector<Part>& parts) {
-          visit(
-              threads, [](std::size_t) { return true; }, [](std::size_t flight) { return flight; },
-              [&](std::size_t flight, std::size_t) { parts[flight] = make(flight); });
+          visit(threads, [&](std::size_t flight) { return [&, flight] { parts[flight] = make(flight); }; });
         },
         state);
   }
@@ -174,28 +142,10 @@ class FlightPartition {
   }
 
  private:
-  template <class Make>
-  static auto part_of(const Make& make, std::size_t flight) {
-    try {
-      return make(flight);
-    } catch (const Error& error) {
-      throw internal::FlightError(error, flight);
-    }
-  }
-
-  /// @param own parts in the order of their flights
-  /// @param take gets those of all flights in their order, one after another, so that not all need be held
-  template <class Part, class Take>
-  void gather(std::vector<Part> own, std::uint64_t state, const Take& take) const {
-    const std::string bytes = internal::packed(own);
-    own = {};
-    const std::vector<std::string> all =
-        comm_->gather(bytes, internal::digest_of(typeid(Part).name(), state + flights()));
-    std::deque<internal::Unpacking> ranks(all.begin(), all.end());
-    for (internal::Unpacking& rank : ranks) rank.next<cereal::size_type>();  // number of its flights
-    for (std::size_t flight = 0; flight < flights(); ++flight)
-      take(flight, ranks[owner_[flight]].template next<Part>());
-  }
+  /// @param packed returns the bytes of a flight of this rank
+  /// @param take gets the bytes of each flight, in their order: it reads the part of the flight
+  void gather(const std::function<std::string(std::size_t)>& packed, std::uint64_t state,
+              const std::function<void(std::size_t, internal::Unpacking&)>& take) const;
 
   Communicator* comm_;
   std::vector<std::size_t> owner_;

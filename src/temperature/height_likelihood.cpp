@@ -263,7 +263,7 @@ Eigen::VectorXd HeightEquations::best(Eigen::Index terms) const { return best_un
 double HeightEquations::log_information(Eigen::Index terms) const {
   const std::vector<Eigen::Index> free = free_unknowns(sizes, terms);
   if (free.empty()) return 0.0;
-  return -std::log(free_covariance(information, sizes, free).determinant());
+  return -Cholesky(free_covariance(information, sizes, free)).log_determinant();
 }
 
 double HeightEquations::deviance_of_heights(const HeightUnknowns& all) const {
@@ -380,14 +380,13 @@ Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, 
     const Eigen::VectorXd moved = above.equations.best(terms) - below.equations.best(terms);
     more += 0.25 * moved * moved.transpose();
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
-  if (factor.info() != Eigen::Success || !more.allFinite()) return covariance;
+  const Cholesky factor(covariance);
+  if (!factor.is_positive_definite() || !more.allFinite()) return covariance;
   // In standard errors, without what would make any smaller.
-  const auto& root = factor.matrixL();
-  const Eigen::MatrixXd scaled = root.solve(root.solve(more).transpose());
+  const Eigen::MatrixXd scaled = factor.whiten(Eigen::MatrixXd(factor.whiten(more).transpose()));
   const SymmetricEigen axes(0.5 * (scaled + scaled.transpose()));
   const Eigen::MatrixXd larger =
-      root * (axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal());
+      factor.lower() * (axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal());
   return covariance + larger * larger.transpose();
 }
 

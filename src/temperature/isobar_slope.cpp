@@ -91,7 +91,7 @@ Eigen::Vector2d estimate_isobar_slope(const HeightRecord& record, IsobarSlope op
     information += offset.head<2>() * offset.head<2>().transpose();
     right += offset.head<2>() * offset[2];
   }
-  return information.ldlt().solve(right);
+  return information.inverse() * right;
 }
 
 void subtract_isobar_slope(HeightRecord& record, IsobarSlope option) {

@@ -97,6 +97,14 @@ void erase_entry(Provenance& provenance, std::string_view key);
 
 /// Contents of a model file: the model for the real-time part, and metadata for files, fits and users.
 struct ModelDefinition {
+  // Defined in the library: the defaults are long code in every file that copies a model.
+  ModelDefinition();
+  ModelDefinition(const ModelDefinition&);
+  ModelDefinition(ModelDefinition&&) noexcept;
+  ModelDefinition& operator=(const ModelDefinition&);
+  ModelDefinition& operator=(ModelDefinition&&) noexcept;
+  ~ModelDefinition();
+
   Model model;
 
   std::map<Quantity, std::string> variables{};  ///< netCDF variable of each used role
