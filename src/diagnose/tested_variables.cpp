@@ -102,8 +102,7 @@ std::vector<TestedVariable> described_by(const Flight& file, const std::set<std:
 /// Reads a variable, one value a record.
 Values read_variable(const Flight& file, const TestedVariable& variable, Seen& seen) {
   std::vector<double> values(file.records());
-  for (const RecordBlock block : blocks_of(file.records()))
-    file.read_at_rate(1, variable.name, block, UnitConversion(), values.data() + block.first);
+  file.read_at_rate(1, variable.name, UnitConversion(), values.data());
   seen.spacing = spacing_of(values);
   if (seen.spacing > 1) fill_between(values, variable.turn > 0.0);
   for (const double value : values) {

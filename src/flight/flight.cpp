@@ -150,7 +150,8 @@ struct Flight::Implementation {
   std::vector<std::string> names;
   std::vector<std::optional<Variable>> variables;  // requested names, in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
-  std::unordered_map<int, RecordMeans> means;  // key: id of the variable
+  std::unordered_map<int, RecordMeans> means;               // key: id of the variable
+  std::unordered_map<std::string, std::string> attributes;  // those of the file, by requested name
   std::vector<double> scratch;
   std::vector<double> flags;
 
@@ -461,7 +462,10 @@ const std::string& Flight::time_variable() const {
 }
 
 std::string Flight::attribute(const std::string& name) const {
-  std::string text = file().text_attribute(FlightFile::whole_file, name);
+  const auto [known, is_new] = implementation_->attributes.try_emplace(name);
+  if (!is_new) return known->second;
+  std::string& text = known->second;
+  text = file().text_attribute(FlightFile::whole_file, name);
   if (!text.empty()) return text;
   for (const std::string& other : file().attribute_names(FlightFile::whole_file)) {
     if (strcasecmp(other.c_str(), name.c_str()) != 0) continue;
@@ -568,16 +572,17 @@ void Flight::keep_means(std::set<std::string> names) const {
   }
 }
 
-RejectedCounts Flight::read_means(const std::string& name, const UnitConversion& conversion,
-                                  double* out) const {
+RejectedCounts Flight::read_at_rate(int rate, const std::string& name, const UnitConversion& conversion,
+                                    double* out) const {
   const RecordMeans* const kept = implementation_->kept_means(implementation_->find_series(name));
-  if (kept != nullptr && kept->are_within(conversion)) {
+  if (rate == 1 && kept != nullptr && kept->are_within(conversion)) {
     std::transform(kept->values.begin(), kept->values.end(), out, conversion);
     return kept->excluded;
   }
   RejectedCounts excluded;
   for (const RecordBlock block : blocks_of(records()))
-    excluded += read_at_rate(1, name, block, conversion, out + block.first);
+    excluded +=
+        read_at_rate(rate, name, block, conversion, out + block.first * static_cast<std::size_t>(rate));
   return excluded;
 }
 

@@ -40,17 +40,9 @@ bool has_role(const Flight& flight, const VariableNaming& family, const std::str
 
 ReadValues read_values(const Flight& flight, const std::string& variable, const UnitConversion& conversion,
                        int rate) {
-  const auto in_record = static_cast<std::size_t>(rate);
   ReadValues read;
-  read.values.resize(flight.records() * in_record);
-  if (rate == 1) {
-    read.excluded = flight.read_means(variable, conversion, read.values.data());
-    return read;
-  }
-  for (const RecordBlock block : blocks_of(flight.records())) {
-    read.excluded +=
-        flight.read_at_rate(rate, variable, block, conversion, read.values.data() + block.first * in_record);
-  }
+  read.values.resize(flight.records() * static_cast<std::size_t>(rate));
+  read.excluded = flight.read_at_rate(rate, variable, conversion, read.values.data());
   return read;
 }
 

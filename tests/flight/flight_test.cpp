@@ -847,7 +847,7 @@ TEST_F(FlightTest, KeptMeansEqualMeansThatAreRead) {
     for (const char* name : {"PSFD", "QCF", "NONE"}) {
       std::vector<double> expected(2), values(2);
       const pcor::RejectedCounts rejected = flight.read_at_rate(1, name, {0, 2}, conversion, expected.data());
-      const pcor::RejectedCounts counted = kept.read_means(name, conversion, values.data());
+      const pcor::RejectedCounts counted = kept.read_at_rate(1, name, conversion, values.data());
       for (int i = 0; i < 2; ++i) EXPECT_THAT(values[i], testing::NanSensitiveDoubleEq(expected[i])) << name;
       EXPECT_EQ(counted.impossible, rejected.impossible) << name;
       EXPECT_EQ(counted.enormous, rejected.enormous) << name;

@@ -169,14 +169,14 @@ class Flight {
   /// @throws Error as `read`, and if neither rate is a multiple of the other.
   RejectedCounts read_at_rate(int rate, const std::string& name, RecordBlock block,
                               const UnitConversion& conversion, double* out) const;
+  /// The same of all records: `records() * rate` values.
+  RejectedCounts read_at_rate(int rate, const std::string& name, const UnitConversion& conversion,
+                              double* out) const;
 
   /// Reads the means over the records of several series together, by blocks of records, and keeps them for
-  /// `read_means` and `require_values`: each pass over a classic file reads all its variables. Series that
+  /// `read_at_rate` and `require_values`: each pass over a classic file reads all its variables. Series that
   /// are absent or cannot be read are omitted.
   void keep_means(std::set<std::string> names) const;
-
-  /// The means over all records, as `read_at_rate` gives them for one sample in a record: `records()` values.
-  RejectedCounts read_means(const std::string& name, const UnitConversion& conversion, double* out) const;
 
   /// Times of the records as stored, seconds since 1970 UTC: `block.count` values.
   void read_time_stamps(RecordBlock block, double* out) const;
