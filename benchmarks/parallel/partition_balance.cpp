@@ -28,11 +28,11 @@ int main(int argc, char** argv) {
       microseconds.push_back(static_cast<std::uint64_t>(20'000.0 * length(chance)));
       all += 1e-6 * static_cast<double>(microseconds.back());
     }
-    const pcor::FlightPartition share(comm, microseconds);
+    const pcor::FlightPartition partition(comm, microseconds);
     MPI_Barrier(MPI_COMM_WORLD);
     const auto begin = std::chrono::steady_clock::now();
     for (int pass = 0; pass < passes; ++pass) {
-      share.of_each_flight<std::array<double, 55>>([&](std::size_t flight) {
+      partition.all_gather_flights<std::array<double, 55>>([&](std::size_t flight) {
         std::this_thread::sleep_for(std::chrono::microseconds(microseconds[flight]));
         return std::array<double, 55>{};
       });

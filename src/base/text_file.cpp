@@ -15,8 +15,8 @@ namespace pcor::internal {
 
 std::string text_of_file(const std::filesystem::path& path, std::string_view what) {
   constexpr std::uintmax_t max_bytes = std::uintmax_t{16} << 20U;
-  const auto fail = [&](const std::string& trouble) {
-    throw Error(Error::Code::file, one_line(fmt::format("{}: {}", path.string(), trouble)));
+  const auto fail = [&](const std::string& problem) {
+    throw Error(Error::Code::file, one_line(fmt::format("{}: {}", path.string(), problem)));
   };
   const std::string advice = fmt::format("; give the path of {}", what);
   std::error_code code;

@@ -60,10 +60,10 @@ Allowed allowed_by(const Flight& flight, const ModelDefinition& model) {
   Allowed allowed;
   allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
   if (!allowed.laser) return allowed;
-  const VariableNaming& family = family_of(model, flight);
-  for (const PressurePair& pair : family.measured) {
+  const VariableNaming& naming = naming_of(model, flight);
+  for (const PressurePair& pair : naming.measured) {
     if (pair.static_pressure != avionics_static_pressure && is_other_pair(model, pair) &&
-        has_values(flight, family, pair))
+        has_values(flight, naming, pair))
       allowed.pairs.emplace_back(pair.static_pressure, pair.dynamic_pressure);
   }
   const auto in_flight = [&flight](const std::string& why) {
@@ -95,9 +95,9 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
 void require_laser(const ModelDefinition& model, const FlightSet& flights) {
   if (model.variables.count(Quantity::lams_airspeed) != 0 || flights.empty() || flights.path(0).empty())
     return;
-  const auto lasers = flights.share().of_each_flight<std::string>([&](std::size_t number) {
+  const auto lasers = flights.partition().all_gather_flights<std::string>([&](std::size_t number) {
     const Flight& flight = flights[number];
-    return first_with_values(flight, family_of(model, flight), info_of(Quantity::lams_airspeed).name);
+    return first_with_values(flight, naming_of(model, flight), info_of(Quantity::lams_airspeed).name);
   });
   const auto laser =
       std::find_if(lasers.begin(), lasers.end(), [](const std::string& name) { return !name.empty(); });
@@ -136,7 +136,7 @@ ChosenReferences read_references(const std::vector<std::string>& texts, const Mo
   if (!texts.empty()) return chosen;
   use("lams");
   if (flights.empty()) return chosen;
-  const Allowed allowed = allowed_by_all(flights.share().of_each_flight<Allowed>(
+  const Allowed allowed = allowed_by_all(flights.partition().all_gather_flights<Allowed>(
       [&](std::size_t number) { return allowed_by(flights[number], model); }));
   if (!allowed.laser) return chosen;
   if (allowed.pairs.empty()) {

@@ -18,7 +18,7 @@ std::string circular_pressure(const FlightSet& flights, const ModelDefinition& m
   if (other.empty()) return "";
   const FlightSet first = flights.part(0, 1);
   const bool is_in_file = !first.path(0).empty();
-  const std::vector<int> is_circular = first.share().of_each_flight<int>([&](std::size_t flight) {
+  const std::vector<int> is_circular = first.partition().all_gather_flights<int>([&](std::size_t flight) {
     return other == own || (is_in_file && is_computed_from(first[flight], other, own)) ? 1 : 0;
   });
   return is_circular.front() != 0 ? other : "";

@@ -14,9 +14,9 @@
 #include "campaign/model_parameters.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 #include "residuals/moving_columns.hpp"
-#include "residuals/packed_residuals.hpp"
+#include "residuals/serialization.hpp"
 #include "roles/model_inputs.hpp"
 
 namespace pcor::internal {
@@ -105,14 +105,14 @@ std::vector<std::size_t> with_flaps_out(const LinearRows& rows) {
   return result;
 }
 
-/// The samples and their neighbours up to `reach` before or after, limited to `size`.
-std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples, std::size_t reach,
+/// The samples and their neighbours up to `half_width` before or after, limited to `size`.
+std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples, std::size_t half_width,
                                          std::size_t size) {
   std::vector<std::size_t> result;
   for (const std::size_t sample : samples) {
-    const std::size_t first = sample - std::min(sample, reach);
+    const std::size_t first = sample - std::min(sample, half_width);
     for (std::size_t i = result.empty() ? first : std::max(first, result.back() + 1);
-         i < std::min(sample + reach + 1, size); ++i)
+         i < std::min(sample + half_width + 1, size); ++i)
       result.push_back(i);
   }
   return result;
@@ -379,10 +379,10 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
                         *compared_with, {is_wind ? Inputs::none : Inputs::noise_free, {}, first_part});
   const Residuals& residuals = rows.residuals();
   const double* const start = residuals.parameters().data();
-  const bool of_neighbours = residuals.reach() > 0;
+  const bool of_neighbours = residuals.half_width() > 0;
   const std::vector<std::size_t> used = of_neighbours ? rows.used() : with_flaps_out(rows);
   const std::vector<std::size_t> needed =
-      is_wind ? used : with_neighbours(used, residuals.reach(), residuals.size());
+      is_wind ? used : with_neighbours(used, residuals.half_width(), residuals.size());
 
   FlightColumns columns;
   columns.reference = reference;
@@ -439,12 +439,12 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   return columns;
 }
 
-BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,
+BinnedFlights in_bins(const FlightPartition& partition, const std::vector<FlightColumns>& flights,
                       const std::function<std::vector<double>(std::size_t flight)>& residual_of) {
   BinnedFlights binned;
   binned.bins.resize(flights.size());
   binned.residuals.resize(flights.size());
-  binned.outlines = share.of_each_flight<NoiseFlight>([&](std::size_t f) {
+  binned.outlines = partition.all_gather_flights<NoiseFlight>([&](std::size_t f) {
     const std::vector<double> residual = residual_of(f);
     const Binning& bins = binned.bins[f] = bins_of(*flights[f].samples, flights[f].window, residual);
     binned.residuals[f] = bins.means(residual);

@@ -79,7 +79,7 @@ struct BinnedFlights {
 
 /// Bins in which the residual of each flight of this rank has values, hPa. @param residual_of returns the
 /// residual
-BinnedFlights in_bins(const FlightPartition& share, const std::vector<FlightColumns>& flights,
+BinnedFlights in_bins(const FlightPartition& partition, const std::vector<FlightColumns>& flights,
                       const std::function<std::vector<double>(std::size_t flight)>& residual_of);
 
 }  // namespace pcor::internal

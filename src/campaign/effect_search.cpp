@@ -41,7 +41,8 @@ constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {wides
 /// `chi2_one_dof` from a table, because draws call it thousands of times.
 class EquivalentTable {
  public:
-  explicit EquivalentTable(Eigen::Index freedom) : freedom_(static_cast<double>(freedom)) {
+  explicit EquivalentTable(Eigen::Index degrees_of_freedom)
+      : freedom_(static_cast<double>(degrees_of_freedom)) {
     for (std::size_t i = 0; i <= steps; ++i)
       values_.push_back(chi2_one_dof(static_cast<double>(i) * width, freedom_));
   }
@@ -65,17 +66,19 @@ class EquivalentTable {
 std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<Directions>& directions) {
   std::vector<EquivalentTable> tables;
   Eigen::Index max_freedom = 0;
-  for (const Directions& each : directions) max_freedom = std::max(max_freedom, each.freedom);
+  for (const Directions& each : directions) max_freedom = std::max(max_freedom, each.degrees_of_freedom);
   for (Eigen::Index k = 0; k <= max_freedom; ++k) tables.emplace_back(k);
   std::vector<double> result(static_cast<std::size_t>(scores.cols()), 0.0);
   for (Eigen::Index draw = 0; draw < scores.cols(); ++draw) {
     Eigen::Index row = 0;
     double& maximum = result[static_cast<std::size_t>(draw)];
-    for (const auto& [count, freedom] : directions) {
+    for (const auto& [count, degrees_of_freedom] : directions) {
       const double chi2 = scores.col(draw).segment(row, count).squaredNorm();
       row += count;
-      if (freedom == 0 || chi2 <= maximum) continue;  // the equivalent never exceeds chi2
-      maximum = std::max(maximum, freedom == 1 ? chi2 : tables[static_cast<std::size_t>(freedom)](chi2));
+      if (degrees_of_freedom == 0 || chi2 <= maximum) continue;  // the equivalent never exceeds chi2
+      maximum = std::max(maximum, degrees_of_freedom == 1
+                                      ? chi2
+                                      : tables[static_cast<std::size_t>(degrees_of_freedom)](chi2));
     }
   }
   return result;
@@ -229,9 +232,9 @@ EffectSearch::Conditional EffectSearch::given(const std::vector<std::size_t>& gr
     result.score -= solution.transpose() * score;
     result.squares -= score.dot(inverse * score);
   }
-  const double freedom =
+  const double degrees_of_freedom =
       static_cast<double>(scores_->row_count) - static_cast<double>(base_) - static_cast<double>(count);
-  result.variance = std::max(result.squares, 0.0) / std::max(freedom, 1.0);
+  result.variance = std::max(result.squares, 0.0) / std::max(degrees_of_freedom, 1.0);
   return result;
 }
 
@@ -244,12 +247,13 @@ GroupScore EffectSearch::score_in(const Conditional& conditional, std::size_t gr
   result.covariance = Eigen::MatrixXd::Zero(columns.count, columns.count);
   if (count == 0 || !(conditional.variance > 0.0)) return result;
   const Eigen::MatrixXd own = conditional.information.block(begin, begin, count, count);
-  for (const double value : symmetric_eigenvalues(own)) result.freedom += value > redundant_below ? 1.0 : 0.0;
-  if (result.freedom == 0.0) return result;
+  for (const double value : symmetric_eigenvalues(own))
+    result.degrees_of_freedom += value > redundant_below ? 1.0 : 0.0;
+  if (result.degrees_of_freedom == 0.0) return result;
   const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
   const Eigen::VectorXd score = conditional.score.segment(begin, count);
   result.chi2 = score.dot(inverse * score) / conditional.variance;
-  result.equivalent = chi2_one_dof(result.chi2, result.freedom);
+  result.chi2_one_dof = chi2_one_dof(result.chi2, result.degrees_of_freedom);
   const Eigen::VectorXd scale = scale_.segment(base_ + columns.first, columns.count);
   const Eigen::MatrixXd turn = scale.asDiagonal() * turned_[group];
   result.estimate = turn * (inverse * score);
@@ -327,7 +331,7 @@ std::vector<Eigen::VectorXd> EffectSearch::leftover_rows(std::size_t group,
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
   std::vector<Eigen::VectorXd> rows(scores_->rows.size());
   for (std::size_t f = 0; f < rows.size(); ++f) {
-    if (scores_->share.is_local(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
+    if (scores_->partition.is_local(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
   }
   return rows;
 }
@@ -346,7 +350,7 @@ double EffectSearch::level(std::size_t winner, const std::vector<std::size_t>& c
   const Eigen::VectorXd sums =
       scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(left_with[f]); });
   const auto whole =
-      scores_->share.sum_of_each_flight<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
+      scores_->partition.all_reduce_flights<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
   const Eigen::VectorXd noise = sums / std::sqrt(whole);
   // Ratio of its observed variation between minutes to the noise model.
   return threshold * std::max(1.0, noise.squaredNorm() / variance(with));
@@ -390,8 +394,8 @@ double EffectSearch::log_ratio(const std::vector<Eigen::Index>& columns,
   const Cholesky factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
   const Eigen::VectorXd right = deviation.cwiseProduct(left_score_(columns));
   const double explained = right.dot(factor.solve(right));
-  const double freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_);
-  return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) -
+  const double degrees_of_freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_);
+  return -0.5 * degrees_of_freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) -
          0.5 * factor.log_determinant();
 }
 
@@ -481,7 +485,7 @@ std::vector<std::size_t>::iterator EffectSearch::first_error_of_linearity(
   std::vector<Eigen::VectorXd> squares;  // sums of each effect against each reference
   for (const std::size_t group : chosen) {
     const std::vector<Eigen::VectorXd> rows = leftover_rows(group, chosen);
-    squares.push_back(scores_->share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) {
+    squares.push_back(scores_->partition.all_reduce_flights<Eigen::VectorXd>([&](std::size_t f) {
       Eigen::VectorXd of_flight = Eigen::VectorXd::Zero(count);
       of_flight[references.empty() ? 0 : as_index(references[f])] = rows[f].squaredNorm();
       return of_flight;
@@ -525,9 +529,9 @@ SearchResult EffectSearch::run(const SearchOptions& options) const {
     const double threshold =
         options.threshold ? *options.threshold : threshold_of(conditional, rest, options);
     if (chosen.empty()) result.threshold = threshold;
-    if (winner == groups_.size() || chosen.size() >= options.max_effects || !(best.equivalent > threshold))
+    if (winner == groups_.size() || chosen.size() >= options.max_effects || !(best.chi2_one_dof > threshold))
       break;
-    if (!options.threshold && !(best.equivalent > level(winner, chosen, threshold))) break;
+    if (!options.threshold && !(best.chi2_one_dof > level(winner, chosen, threshold))) break;
     chosen.push_back(winner);
     improve(chosen, price);
     if (std::find(seen.begin(), seen.end(), chosen) != seen.end()) break;
@@ -537,7 +541,7 @@ SearchResult EffectSearch::run(const SearchOptions& options) const {
   const auto first_weak = [&] {
     return std::find_if(chosen.begin(), chosen.end(), [&](std::size_t group) {
       const GroupScore now = score(group, chosen);
-      return !now.possible || !(now.equivalent > result.threshold);
+      return !now.possible || !(now.chi2_one_dof > result.threshold);
     });
   };
   // One at a time: without it, similar effects explain more.
@@ -554,7 +558,7 @@ SearchResult EffectSearch::run(const SearchOptions& options) const {
     // Number of independent groups whose best score has this threshold.
     const double effective = (1.0 - options.confidence) / chi_squared_tail(result.threshold, 1.0);
     result.p_values.push_back(
-        std::min(1.0, effective * chi_squared_tail(score(group, chosen).equivalent, 1.0)));
+        std::min(1.0, effective * chi_squared_tail(score(group, chosen).chi2_one_dof, 1.0)));
   }
   return result;
 }
@@ -563,7 +567,7 @@ double EffectSearch::correlation(std::size_t a, std::size_t b, const std::vector
   const Conditional conditional = given(set_without(set_without(others, a), b));
   std::vector<Directions> directions;
   const Eigen::MatrixXd turn = normal_turn(conditional, {a, b}, directions);
-  if (directions[0].freedom == 0 || directions[1].freedom == 0) return 0.0;
+  if (directions[0].degrees_of_freedom == 0 || directions[1].degrees_of_freedom == 0) return 0.0;
   const Eigen::MatrixXd turned = turn.transpose() * conditional.information * turn;
   const Eigen::MatrixXd across = turned.topRightCorner(directions[0].count, directions[1].count);
   if (across.size() == 1) return std::clamp(across(0, 0), -1.0, 1.0);

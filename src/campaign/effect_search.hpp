@@ -73,14 +73,14 @@ inline constexpr double widest_prior = 10.0;
 /// Directions of a group of columns.
 struct Directions {
   Eigen::Index count;
-  Eigen::Index freedom;  ///< number of directions that the other columns do not imitate
+  Eigen::Index degrees_of_freedom;  ///< number of directions that the other columns do not imitate
 };
 
 /// Score of a group in addition to a set of others.
 struct GroupScore {
   double chi2 = 0.0;
-  double freedom = 0.0;     ///< directions not explained by base and others
-  double equivalent = 0.0;  ///< equivalent chi2 of one degree of freedom
+  double degrees_of_freedom = 0.0;  ///< directions not explained by base and others
+  double chi2_one_dof = 0.0;        ///< equivalent chi2 of one degree of freedom
   Eigen::VectorXd estimate{};
   Eigen::MatrixXd covariance{};
   bool possible = false;  ///< the estimate is within its bounds, given the errors

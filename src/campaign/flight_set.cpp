@@ -14,7 +14,7 @@
 #include "flight/file_state.hpp"
 #include "parallel/flight_partition.hpp"
 #include "residuals/samples.hpp"
-#include "roles/aircraft_family.hpp"
+#include "roles/variable_naming.hpp"
 
 namespace pcor {
 
@@ -127,9 +127,10 @@ struct FlightSet::Entry {
   }
 };
 
-FlightSet::FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightPartition share, Communicator& comm)
+FlightSet::FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightPartition partition,
+                     Communicator& comm)
     : entries_(std::move(entries)),
-      share_(std::make_shared<const FlightPartition>(std::move(share))),
+      partition_(std::make_shared<const FlightPartition>(std::move(partition))),
       comm_(&comm) {}
 
 FlightSet::FlightSet()
@@ -174,14 +175,14 @@ FlightSet FlightSet::only(std::size_t flight) const {
 
 FlightSet FlightSet::part(std::size_t first, std::size_t count) const {
   const auto begin = entries_.begin() + static_cast<std::ptrdiff_t>(first);
-  return {{begin, begin + static_cast<std::ptrdiff_t>(count)}, share_->part(first, count), *comm_};
+  return {{begin, begin + static_cast<std::ptrdiff_t>(count)}, partition_->part(first, count), *comm_};
 }
 
 FlightSet FlightSet::with(const FlightSet& more) const {
   if (more.empty()) return *this;
   std::vector<std::shared_ptr<Entry>> all = entries_;
   all.insert(all.end(), more.entries_.begin(), more.entries_.end());
-  return {std::move(all), share_->with(*more.share_), *comm_};
+  return {std::move(all), partition_->with(*more.partition_), *comm_};
 }
 
 const Flight& FlightSet::operator[](std::size_t flight) const { return entries_[flight]->open(); }
@@ -210,7 +211,7 @@ std::vector<FlightOutline> FlightSet::outlines() const {
   const bool are_known = std::all_of(entries_.begin(), entries_.end(),
                                      [](const auto& entry) { return entry->outline.has_value(); });
   if (!are_known) {
-    const auto found = share_->of_each_flight<FlightOutline>([this](std::size_t number) {
+    const auto found = partition_->all_gather_flights<FlightOutline>([this](std::size_t number) {
       const Entry& entry = *entries_[number];
       if (entry.given) {
         const std::vector<double>& time = entry.given->time;
@@ -218,7 +219,7 @@ std::vector<FlightOutline> FlightSet::outlines() const {
                              time.empty() ? 0.0 : time.front()};
       }
       const Flight& file = (*this)[number];
-      return FlightOutline{file.aircraft(), family_of(file).name, file.time_variable(), title_of(file),
+      return FlightOutline{file.aircraft(), naming_of(file).name, file.time_variable(), title_of(file),
                            file.time().first};
     });
     for (std::size_t i = 0; i < size(); ++i) entries_[i]->outline = found[i];
@@ -229,7 +230,7 @@ std::vector<FlightOutline> FlightSet::outlines() const {
 }
 
 std::vector<std::vector<std::string>> FlightSet::variables() const {
-  return share_->of_each_flight<std::vector<std::string>>(
+  return partition_->all_gather_flights<std::vector<std::string>>(
       [this](std::size_t number) { return (*this)[number].variables(); });
 }
 
@@ -268,7 +269,7 @@ void FlightSet::require_each_once() const {
 }
 
 void FlightSet::require_unchanged() const {
-  share_->of_each_flight<int>([this](std::size_t number) {
+  partition_->all_gather_flights<int>([this](std::size_t number) {
     entries_[number]->require_unchanged();
     return 0;
   });

@@ -282,13 +282,13 @@ Series gust_level(const Series& east, const Series& north, const Series& time, d
   constexpr double factor = 8.26;
   constexpr double minimum = 1e-6;
   const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(over / step)));
-  const auto reach = static_cast<std::size_t>(std::round(within / step));
+  const auto half_width = static_cast<std::size_t>(std::round(within / step));
   Series squares(east.size(), nan);
   for (std::size_t i = lag; i < squares.size(); ++i) {
     if (time[i] - time[i - lag] > 1.5 * over) continue;
     squares[i] = 0.5 * (std::pow(east[i] - east[i - lag], 2) + std::pow(north[i] - north[i - lag], 2));
   }
-  Series level = running_mean(squares, 2 * reach);
+  Series level = running_mean(squares, 2 * half_width);
   const double whole = mean_of(squares);
   for (double& each : level) each = std::max(minimum, (std::isnan(each) ? whole : each) / factor);
   return level;

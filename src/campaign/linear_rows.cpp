@@ -11,12 +11,12 @@ namespace pcor::internal {
 namespace {
 
 /// Excludes the samples that depend on excluded neighbours.
-void mask_by_neighbours(std::vector<Mask>& masks, std::size_t reach) {
+void mask_by_neighbours(std::vector<Mask>& masks, std::size_t half_width) {
   const std::vector<Mask> own = masks;
   for (std::size_t i = 0; i < own.size(); ++i) {
     // If only the residual is missing, its inputs are present.
     if (own[i] == Mask::none || own[i] == Mask::reference) continue;
-    for (std::size_t k = i - std::min(i, reach); k < std::min(i + reach + 1, own.size()); ++k) {
+    for (std::size_t k = i - std::min(i, half_width); k < std::min(i + half_width + 1, own.size()); ++k) {
       if (masks[k] == Mask::none) masks[k] = Mask::reference;
     }
   }
@@ -47,8 +47,8 @@ LinearRows::LinearRows(Residuals residuals, const ModelDefinition& model, const 
       at_sensor_(setup.inputs == Inputs::noise_free || !linear_),
       mask_(residuals_.mask()) {
   choose_inputs(model, reference, setup.inputs);
-  if (setup.inputs == Inputs::noise_free && residuals_.reach() > 0)
-    mask_by_neighbours(mask_, residuals_.reach());
+  if (setup.inputs == Inputs::noise_free && residuals_.half_width() > 0)
+    mask_by_neighbours(mask_, residuals_.half_width());
   used_ = used_samples(mask_, setup.first_part);
   held_out_ = used_samples(mask_);
   held_out_.erase(held_out_.begin(), held_out_.begin() + static_cast<std::ptrdiff_t>(used_.size()));
@@ -61,7 +61,7 @@ LinearRows::LinearRows(Residuals residuals, const ModelDefinition& model, const 
 void LinearRows::choose_inputs(const ModelDefinition& model, const Reference& reference, Inputs inputs) {
   if (inputs == Inputs::none) return;
   std::shared_ptr<const FlightSamples> elsewhere = residuals_.at_common_pressures();
-  if (inputs == Inputs::noise_free && residuals_.reach() == 0) {
+  if (inputs == Inputs::noise_free && residuals_.half_width() == 0) {
     auto predicted = std::make_shared<FlightSamples>(
         with_predicted_pressures(elsewhere ? *elsewhere : samples(), samples()));
     const Residuals of_predicted(predicted, model, reference, residuals_.mask());

@@ -26,7 +26,7 @@ using Choice = std::optional<std::pair<std::map<Quantity, std::string>, bool>>;
 }  // namespace
 
 ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flights, Notes& notes) {
-  const auto choices = flights.share().of_each_flight<Choice>([&](std::size_t number) {
+  const auto choices = flights.partition().all_gather_flights<Choice>([&](std::size_t number) {
     try {
       Notes unsaid;
       const ModelDefinition own = resolve_variables(open, flights[number], unsaid);

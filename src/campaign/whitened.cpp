@@ -11,7 +11,7 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/noise_covariance.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -62,14 +62,14 @@ Eigen::Index find_blocks(const Binning& bins, std::vector<Eigen::Index>& block) 
 
 }  // namespace
 
-std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
+std::vector<NoiseModel> noise_of_flights(const FlightPartition& partition, const BinnedFlights& flights,
                                          const BinnedFit& fit, const FindNoise& find) {
   std::vector<NoiseModel> noise(flights.bins.size());
   for (std::size_t first = 0; first < noise.size();) {
     std::size_t last = first;
     while (last < noise.size() && flights.reference[last] == flights.reference[first]) ++last;
     const std::vector<std::size_t> few = few_of(flights.outlines, first, last);
-    const auto rows_of = share.of_entries(few).of_each_flight<BinnedRows>(
+    const auto rows_of = partition.of_entries(few).all_gather_flights<BinnedRows>(
         [&](std::size_t k) {
           return BinnedRows{flights.bins[few[k]], side_by_side(fit.columns(few[k]), fit.left(few[k]))};
         },
@@ -88,7 +88,7 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const Bin
     for (; first < last; ++first) {
       noise[first] = shared;
       noise[first].level.resize(1);
-      if (!share.is_local(first)) continue;
+      if (!partition.is_local(first)) continue;
       const Binning& own = flights.bins[first];
       noise[first].level[0] = noise_levels(own, fit.left(first), shared);
     }
@@ -112,8 +112,8 @@ Eigen::MatrixXd side_by_side(const Eigen::MatrixXd& left, const Eigen::MatrixXd&
 
 double robust_deviation(Communicator& comm, const std::vector<Eigen::VectorXd>& values) {
   std::vector<double> all;
-  for (const std::string& bytes : comm.gather(packed(values))) {
-    for (const auto& each : unpacked<std::vector<Eigen::VectorXd>>(bytes))
+  for (const std::string& bytes : comm.all_gather(serialized(values))) {
+    for (const auto& each : deserialized<std::vector<Eigen::VectorXd>>(bytes))
       all.insert(all.end(), each.begin(), each.end());
   }
   return robust_standard_deviation(std::move(all));
@@ -147,13 +147,14 @@ PartialSums& PartialSums::operator+=(const PartialSums& other) {
 std::vector<Eigen::VectorXd> WhitenedSystem::left(const Eigen::VectorXd& coefficients) const {
   std::vector<Eigen::VectorXd> result(rows.size());
   for (std::size_t f = 0; f < rows.size(); ++f) {
-    if (share.is_local(f)) result[f] = rows[f].col(columns()) - rows[f].leftCols(columns()) * coefficients;
+    if (partition.is_local(f))
+      result[f] = rows[f].col(columns()) - rows[f].leftCols(columns()) * coefficients;
   }
   return result;
 }
 
 Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(std::size_t)>& of_rows) const {
-  const auto parts = share.of_each_flight<Eigen::VectorXd>([&](std::size_t f) {
+  const auto parts = partition.all_gather_flights<Eigen::VectorXd>([&](std::size_t f) {
     if (block[f].empty()) return Eigen::VectorXd();
     const Eigen::VectorXd values = of_rows(f);
     const Eigen::Index first = block[f].front();
@@ -172,8 +173,8 @@ Eigen::VectorXd WhitenedSystem::by_minutes(const std::function<Eigen::VectorXd(s
 }
 
 void sum_up(WhitenedSystem& scores) {
-  scores.information = scores.share.sum_of_each_flight<Eigen::MatrixXd>(
-      [&](std::size_t f) { return products_of(scores.rows[f]); }, scores.share.threads());
+  scores.information = scores.partition.all_reduce_flights<Eigen::MatrixXd>(
+      [&](std::size_t f) { return products_of(scores.rows[f]); }, scores.partition.threads());
 }
 
 void marginalize(WhitenedSystem& system, Eigen::Index count) {
@@ -229,17 +230,17 @@ void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier
   }
 }
 
-WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
-                           const std::vector<Eigen::MatrixXd>& columns,
-                           const std::vector<Eigen::VectorXd>& residuals,
-                           const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white) {
+WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,
+                             const std::vector<Eigen::MatrixXd>& columns,
+                             const std::vector<Eigen::VectorXd>& residuals,
+                             const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white) {
   WhitenedSystem scores;
-  scores.share = share;
+  scores.partition = partition;
   scores.rows.resize(bins.size());
   scores.bin.resize(bins.size());
   scores.block.resize(bins.size());
   const auto is_white = [&white](std::size_t f) { return !white.empty() && white[f].rows.size() > 0; };
-  const auto counts = share.of_each_flight<RowCount>(
+  const auto counts = partition.all_gather_flights<RowCount>(
       [&](std::size_t f) {
         if (is_white(f)) {
           scores.rows[f] = white[f].rows;
@@ -250,7 +251,7 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
         return RowCount{static_cast<std::size_t>(scores.rows[f].rows()),
                         find_blocks(bins[f], scores.block[f])};
       },
-      0, share.threads());
+      0, partition.threads());
   for (std::size_t f = 0; f < counts.size(); ++f) {
     for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
     const auto& [rows, blocks] = counts[f];
@@ -259,28 +260,28 @@ WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binni
   }
   sum_up(scores);
   scores.plain = scores.information;
-  if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
-    scores.plain = share.sum_of_each_flight<Eigen::MatrixXd>(
+  if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.has_drift(); })) {
+    scores.plain = partition.all_reduce_flights<Eigen::MatrixXd>(
         [&](std::size_t f) {
           NoiseModel still = noise[f];
-          still.slow = {};
-          return products_of(noise[f].drifts() && !is_white(f)
+          still.drift_component_rms = {};
+          return products_of(noise[f].has_drift() && !is_white(f)
                                  ? whitened(side_by_side(columns[f], residuals[f]), bins[f], still, 0)
                                  : scores.rows[f]);
         },
-        share.threads());
+        partition.threads());
   }
   return scores;
 }
 
-WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
-                           const std::vector<Eigen::MatrixXd>& columns,
-                           const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise) {
+WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,
+                             const std::vector<Eigen::MatrixXd>& columns,
+                             const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise) {
   NoiseModel shared = noise;
   shared.level.clear();  // one copy of all levels for each flight would grow with the square of their number
   std::vector<NoiseModel> each(bins.size(), shared);
   for (std::size_t f = 0; f < bins.size(); ++f) each[f].level = {noise.level[f]};
-  return find_scores(share, bins, columns, residuals, each);
+  return whiten_system(partition, bins, columns, residuals, each);
 }
 
 }  // namespace pcor::internal

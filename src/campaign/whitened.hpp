@@ -32,7 +32,7 @@ using FindNoise =
 
 /// Noise of each flight, separate for each reference. The common part is found from a few flights by `find`;
 /// the level of a flight follows from the common part and its residual.
-std::vector<NoiseModel> noise_of_flights(const FlightPartition& share, const BinnedFlights& flights,
+std::vector<NoiseModel> noise_of_flights(const FlightPartition& partition, const BinnedFlights& flights,
                                          const BinnedFit& fit, const FindNoise& find);
 
 /// Common noise of the flights against the first reference, with the levels of the flights of this rank.
@@ -75,7 +75,7 @@ struct PartialSums {
 /// Whitened columns and residuals of all flights against their references, and the sums of a generalised
 /// least-squares problem. A rank has the rows of its local flights and the sums of all.
 struct WhitenedSystem {
-  FlightPartition share = FlightPartition(0);
+  FlightPartition partition = FlightPartition(0);
   std::vector<Eigen::MatrixXd> rows{};             ///< per flight: whitened columns and, last, the residual
   std::vector<std::vector<Eigen::Index>> bin{};    ///< per flight: bin of each row; empty: rows are bins
   std::vector<std::vector<Eigen::Index>> block{};  ///< per flight: index of the minute of each bin
@@ -105,15 +105,16 @@ struct WhiteFlight {
 
 /// Whitens the columns of each local flight. @param noise likewise, each of one flight alone
 /// @param white rows of flights that need no whitening; empty for the others
-WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
-                           const std::vector<Eigen::MatrixXd>& columns,
-                           const std::vector<Eigen::VectorXd>& residuals,
-                           const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white = {});
+WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,
+                             const std::vector<Eigen::MatrixXd>& columns,
+                             const std::vector<Eigen::VectorXd>& residuals,
+                             const std::vector<NoiseModel>& noise,
+                             const std::vector<WhiteFlight>& white = {});
 
 /// Whitens with one noise model for all flights and the noise level of each flight.
-WhitenedSystem find_scores(const FlightPartition& share, const std::vector<Binning>& bins,
-                           const std::vector<Eigen::MatrixXd>& columns,
-                           const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
+WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,
+                             const std::vector<Eigen::MatrixXd>& columns,
+                             const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
 
 /// Removes from the rows of `later` the noise in common with `earlier`, the same flight against another
 /// reference: both contain the noise of the aircraft's own sensors. The remaining rows stay in units of the

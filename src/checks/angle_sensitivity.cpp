@@ -6,7 +6,7 @@
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include "base/phrasing.hpp"
-#include "checks/flown.hpp"
+#include "checks/manoeuvre_segment.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -21,10 +21,10 @@ const double ends_of_sine = 2.0 * std::sqrt(2.0);
 struct AngleReference {
   const char* name;
   /// p(reference) - p(model) at the records of a manoeuvre, hPa; empty if its flight lacks the reference.
-  std::vector<double> (*residual)(const Flown& flown);
+  std::vector<double> (*residual)(const ManoeuvreSegment& flown);
 };
 
-std::vector<double> from_laser(const Flown& flown) {
+std::vector<double> from_laser(const ManoeuvreSegment& flown) {
   const FlightAir& air = flown.flight->air;
   if (!air.laser || !has_value(air.laser->static_defect)) return {};
   return difference(flown.of(air.laser->static_defect), flown.of(air.static_defect));
@@ -33,7 +33,7 @@ std::vector<double> from_laser(const Flown& flown) {
 /// In air at rest the pressure falls by rho g for each metre, so the pressure of the model implies the height
 /// -(R_a T/g0) ln(p/p_mean), with means over the manoeuvre. A GPS height above it is a pressure of the model
 /// that is too high by rho g for each metre.
-std::vector<double> from_height(const Flown& flown) {
+std::vector<double> from_height(const ManoeuvreSegment& flown) {
   const FlightAir& air = flown.flight->air;
   if (!has_value(air.geopotential_height) || !has_value(air.temperature) || !height_problem(air).empty())
     return {};
@@ -50,7 +50,7 @@ std::vector<double> from_height(const Flown& flown) {
   return residual;
 }
 
-std::vector<double> from_second_system(const Flown& flown) {
+std::vector<double> from_second_system(const ManoeuvreSegment& flown) {
   const CheckedFlight& flight = *flown.flight;
   if (!flight.second || !has_value(flight.second->pressure)) return {};
   return difference(flown.of(flight.second->pressure), flown.of(flight.air.pressure));
@@ -62,7 +62,7 @@ constexpr AngleReference other_system{"second system", from_second_system};
 
 /// Result of a manoeuvre for an angle.
 struct AngleSensitivity {
-  Flown flown;
+  ManoeuvreSegment flown;
   AngleReference reference{};
   std::vector<double> residual;  ///< residual at the records of the manoeuvre, hPa, minus its mean
   double swing = 0.0;            ///< standard deviation of the angle, deg
@@ -87,7 +87,7 @@ struct AngleCheck {
   std::vector<double> FlightMotion::*recorded;
   std::vector<double> FlightAir::*ratio;
   const char* variables;  ///< variables of the angle, for messages
-  const char* cannot_see;
+  const char* limitations;
 
   /// Angle of a flight, deg: from the model, otherwise as recorded; empty if it has neither.
   const std::vector<double>& angle_of(const FlightAir& air) const {
@@ -97,11 +97,11 @@ struct AngleCheck {
 
 /// Regression of the residual on the angle, with a constant and a drift in time, and with the square of the
 /// angle if the check has it. NaN if the manoeuvre has too few values.
-AngleSensitivity sensitivity_of(const Flown& flown, const AngleReference& reference,
+AngleSensitivity sensitivity_of(const ManoeuvreSegment& flown, const AngleReference& reference,
                                 const std::vector<double>& residual, const AngleCheck& check) {
   const FlightAir& air = flown.flight->air;
   const std::vector<double> angles = flown.of(check.angle_of(air));
-  AngleSensitivity result{flown, reference, less_mean(residual), standard_deviation(angles)};
+  AngleSensitivity result{flown, reference, subtract_mean(residual), standard_deviation(angles)};
   std::vector<std::vector<double>> columns{angles};
   if (check.with_square) columns.push_back(squares_of(angles));
   const LeastSquares against_angle = flown.regression(residual, columns);
@@ -155,12 +155,12 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
     return has_value(check.angle_of(flight.air));
   });
   if (!has_angle) return not_run(fmt::format("no flight has the {} ({})", check.angle, check.variables));
-  const std::vector<Flown> flown = all_flown(flights, check.regime);
-  if (flown.empty()) return not_flown(flights, check.regime);
+  const std::vector<ManoeuvreSegment> flown = segments_of_regime(flights, check.regime);
+  if (flown.empty()) return regime_not_found(flights, check.regime);
   CheckResult result;
   std::vector<AngleSensitivity> manoeuvres;
   bool has_reference = false;
-  for (const Flown& each : flown) {
+  for (const ManoeuvreSegment& each : flown) {
     bool has_too_few = false;
     for (const AngleReference& reference : check.references) {
       const std::vector<double> residual = reference.residual(each);
@@ -181,38 +181,40 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
                     "static system (--reference static:OTHER.toml) and no GPS height with a temperature{}",
                     info_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
-  if (manoeuvres.empty()) return not_flown(flights, check.regime, result.notes);
+  if (manoeuvres.empty()) return regime_not_found(flights, check.regime, result.notes);
   const auto swing = [](const AngleSensitivity& each) { return ends_of_sine * each.swing; };
   const auto square = [](const AngleSensitivity& each) { return each.maximum * each.maximum; };
   const Estimate slope = combined(each_of(manoeuvres, &AngleSensitivity::slope));
   const Estimate bend = combined(each_of(manoeuvres, &AngleSensitivity::bend));
   const Estimate across = mean_of(each_of(manoeuvres, swing)) * slope;
   const Estimate bent = mean_of(each_of(manoeuvres, square)) * bend;
-  std::vector<TestStatistic> numbers{judged(across, min_swing_change, "hPa", "change across the swing")};
+  std::vector<TestStatistic> numbers{
+      test_statistic(across, min_swing_change, "hPa", "change across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
       manoeuvres.size(), info_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s",
       references_of(manoeuvres), format_number(slope, "hPa/deg", 3), check.angle,
       format_number(across, "hPa"));
   if (check.with_square) {
-    numbers.push_back(judged(bent, min_swing_change, "hPa", "quadratic part at the end of the swing"));
+    numbers.push_back(
+        test_statistic(bent, min_swing_change, "hPa", "quadratic part at the end of the swing"));
     result.finding += fmt::format(" With its square the residual changes by {}, {} at the end of the swing.",
                                   format_number(bend, "hPa/deg2", 4), format_number(bent, "hPa"));
   }
-  decide(std::move(numbers), result);
+  set_verdict(std::move(numbers), result);
   const auto uncorrected =
       std::find_if(manoeuvres.begin(), manoeuvres.end(), [](const AngleSensitivity& each) {
         return each.reference.residual == from_second_system && !each.flown.flight->second_corrected;
       });
   if (uncorrected != manoeuvres.end()) {
     if (result.verdict == CheckVerdict::inconsistent)
-      withhold("the second system is uncorrected, and the slope may be its error", result);
+      mark_inconclusive("the second system is uncorrected, and the slope may be its error", result);
     result.notes.push_back(
         fmt::format("{} is uncorrected, and the slope may be its error; --reference static:OTHER.toml gives "
                     "its correction",
                     uncorrected->flown.flight->second_name));
   }
-  result.cannot_see = check.cannot_see;
+  result.limitations = check.limitations;
   result.numbers = {{"manoeuvres", static_cast<double>(manoeuvres.size())}};
   add_number("slope", "_hpa_deg", slope, result);
   add_number("across", "_hpa", across, result);

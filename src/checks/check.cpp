@@ -10,11 +10,11 @@
 #include <pcor/base/error.hpp>
 #include "base/phrasing.hpp"
 #include "checks/checks.hpp"
-#include "checks/flown.hpp"
-#include "flight/trouble_with_values.hpp"
+#include "checks/manoeuvre_segment.hpp"
+#include "flight/value_problem.hpp"
 #include "numerics/missing.hpp"
 #include "parallel/flight_partition.hpp"
-#include "residuals/packed_residuals.hpp"
+#include "residuals/serialization.hpp"
 #include "roles/recorded_model.hpp"
 
 namespace pcor {
@@ -23,13 +23,13 @@ using namespace internal;
 
 template <class Archive>
 void serialize(Archive& archive, TestStatistic& number) {
-  archive(number.value, number.standard_error, number.matters, number.unit, number.what, number.verdict);
+  archive(number.value, number.standard_error, number.tolerance, number.unit, number.what, number.verdict);
 }
 
 /// The members of `check_per_flight`.
 template <class Archive>
 void serialize(Archive& archive, CheckResult& check) {
-  archive(check.name, check.ran, check.reason, check.verdict, check.key, check.withheld);
+  archive(check.name, check.was_run, check.reason, check.verdict, check.key, check.inconclusive_reason);
 }
 
 namespace {
@@ -44,7 +44,7 @@ std::string without_values(const Flight& flight, const ModelDefinition& model) {
   const PressurePair pair = pair_of(model);
   for (const std::string& variable : {pair.static_pressure, pair.dynamic_pressure}) {
     if (!flight.has(variable)) return "";  // suggestions are part of the message
-    if (std::string trouble = value_problem(flight, variable); !trouble.empty()) return trouble;
+    if (std::string problem = value_problem(flight, variable); !problem.empty()) return problem;
   }
   return "";
 }
@@ -58,7 +58,7 @@ struct Systems {
 Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   Systems systems;
   std::vector<PressurePair> pairs = measured_pairs(flight);
-  const std::vector<PressurePair>& processed = family_of(flight).processed;
+  const std::vector<PressurePair>& processed = naming_of(flight).processed;
   const bool corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
     return pair.static_pressure == of_model.static_pressure;
   });
@@ -150,7 +150,7 @@ FlightPart part_of(const FlightSet& flights, std::size_t number, const std::opti
 void add_note_on_small(CheckResult& result) {
   constexpr double significant = 3.0;  // standard errors
   const double deviations = std::abs(result.key.value) / result.key.standard_error;
-  const bool is_small = result.ran && std::abs(result.key.value) <= result.key.matters;
+  const bool is_small = result.was_run && std::abs(result.key.value) <= result.key.tolerance;
   if (!is_small || !(deviations > significant)) return;
   result.notes.push_back(
       fmt::format("the number is {:.0f} standard errors from zero: significant, but negligible", deviations));
@@ -195,9 +195,9 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
   }
   flights.require_one_aircraft();
   std::size_t done = 0;
-  auto parts = flights.share().of_each_flight<FlightPart>([&](std::size_t number) {
+  auto parts = flights.partition().all_gather_flights<FlightPart>([&](std::size_t number) {
     FlightPart part = part_of(flights, number, model, options);
-    if (options.progress) options.progress(++done, flights.share().local_count());
+    if (options.progress) options.progress(++done, flights.partition().local_count());
     return part;
   });
   flights.require_unchanged();
@@ -233,7 +233,7 @@ std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
                                                        const CheckOptions& options) {
   CheckOptions own = options;
   own.progress = nullptr;
-  return flights.share().of_each_flight<std::vector<CheckResult>>(
+  return flights.partition().all_gather_flights<std::vector<CheckResult>>(
       [&](std::size_t number) { return check(flights.only(number), model, own).results; });
 }
 

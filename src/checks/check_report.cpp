@@ -144,7 +144,7 @@ ReportTable verdicts(const Checks& checks) {
       "tolerance by two standard errors. Otherwise the check is inconclusive.",
       {"check", "verdict", "number", "tolerance", "result"}};
   for (const CheckResult& result : checks.results) {
-    if (!result.ran) {
+    if (!result.was_run) {
       table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
       continue;
     }
@@ -152,7 +152,7 @@ ReportTable verdicts(const Checks& checks) {
     table.rows.push_back(
         {heading(result.name), std::string(to_string(result.verdict)),
          fmt::format("{:+.3f} ± {:.3f} {}, {}", key.value, key.standard_error, key.unit, key.what),
-         fmt::format("{:g} {}", key.matters, key.unit), sentence(result.finding)});
+         fmt::format("{:g} {}", key.tolerance, key.unit), sentence(result.finding)});
   }
   return table;
 }
@@ -170,14 +170,14 @@ DotPanel forest(const Checks& checks) {
   panel.band = "negligible";
   for (const CheckResult& result : checks.results) {
     const TestStatistic& key = result.key;
-    if (!result.ran || !(key.matters > 0.0) || !std::isfinite(key.value)) continue;
+    if (!result.was_run || !(key.tolerance > 0.0) || !std::isfinite(key.value)) continue;
     const bool is_known = std::isfinite(key.standard_error);
     const double error = is_known ? key.standard_error : 0.0;
     const ReportTone tone = result.verdict == CheckVerdict::consistent     ? ReportTone::good
                             : result.verdict == CheckVerdict::inconsistent ? ReportTone::bad
                                                                            : ReportTone::open;
     panel.rows.push_back({heading(result.name),
-                          {{key.value / key.matters, error / key.matters}},
+                          {{key.value / key.tolerance, error / key.tolerance}},
                           is_known ? fmt::format("{:+.3f} ± {:.3f} {}", key.value, error, key.unit)
                                    : fmt::format("{:+.3f} {}, error unknown", key.value, key.unit),
                           tone});
@@ -204,7 +204,7 @@ ReportTable numbers_of(const CheckResult& result) {
 std::map<CheckVerdict, std::vector<const CheckResult*>> by_verdict(const Checks& checks) {
   std::map<CheckVerdict, std::vector<const CheckResult*>> found;
   for (const CheckResult& result : checks.results) {
-    if (result.ran) found[result.verdict].push_back(&result);
+    if (result.was_run) found[result.verdict].push_back(&result);
   }
   return found;
 }
@@ -216,15 +216,16 @@ std::string summary_of(const Checks& checks) {
   const auto& inconsistent = found[CheckVerdict::inconsistent];
   const auto& inconclusive = found[CheckVerdict::inconclusive];
   const std::size_t consistent = found[CheckVerdict::consistent].size();
-  const std::size_t ran = consistent + inconclusive.size() + inconsistent.size();
+  const std::size_t run_count = consistent + inconclusive.size() + inconsistent.size();
   std::vector<std::string> names;
   for (const CheckResult* const result : inconsistent) names.push_back(result->name);
   if (!names.empty())
-    return fmt::format("{} of {} checks inconsistent: {}", names.size(), ran, fmt::join(names, ", "));
+    return fmt::format("{} of {} checks inconsistent: {}", names.size(), run_count, fmt::join(names, ", "));
   if (consistent > 0) {
-    return fmt::format(
-        "No check contradicts the {}{}", checks.has_model ? "model" : "pressures",
-        inconclusive.empty() ? "" : fmt::format("; {} of {} checks inconclusive", inconclusive.size(), ran));
+    return fmt::format("No check contradicts the {}{}", checks.has_model ? "model" : "pressures",
+                       inconclusive.empty()
+                           ? ""
+                           : fmt::format("; {} of {} checks inconclusive", inconclusive.size(), run_count));
   }
   for (const CheckResult* const result : inconclusive) {
     const TestStatistic& key = result->key;
@@ -233,7 +234,7 @@ std::string summary_of(const Checks& checks) {
   }
   return fmt::format("Nothing is decided: {}{} not run",
                      names.empty() ? "" : fmt::format("{} inconclusive, ", fmt::join(names, ", ")),
-                     checks.results.size() - ran);
+                     checks.results.size() - run_count);
 }
 
 Report check_report(const Checks& checks) {
@@ -270,11 +271,11 @@ Report check_report(const Checks& checks) {
   if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));
   report.items.emplace_back(verdicts(checks));
   for (const CheckResult& result : checks.results) {
-    if (!result.ran) continue;
+    if (!result.was_run) continue;
     ReportText text;
     text.title = fmt::format("{}: {}", heading(result.name), to_string(result.verdict));
-    text.paragraphs = {fmt::format("Decided by this number: {}.", result.decided), sentence(result.finding),
-                       "Limitations: " + result.cannot_see};
+    text.paragraphs = {fmt::format("Decided by this number: {}.", result.explanation),
+                       sentence(result.finding), "Limitations: " + result.limitations};
     for (const Note& note : result.notes) text.paragraphs.push_back(sentence(format_note(note)));
     report.items.emplace_back(std::move(text));
     add_figures(result, report);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "checks/circle_fit.hpp"
-#include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
+#include "checks/manoeuvre_segment.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -21,7 +21,7 @@ constexpr double min_turn = 300.0;  // deg
 constexpr double wind_drift_of_circle = 0.25 * change_of_wind;
 
 struct Circle {
-  Flown flown;
+  ManoeuvreSegment flown;
   CircleFit fit;
 };
 
@@ -48,7 +48,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     return not_run("no flight " + missing);
   CheckResult result;
   std::vector<Circle> circles;
-  for (Flown& flown : all_flown(flights, Regime::circle)) {
+  for (ManoeuvreSegment& flown : segments_of_regime(flights, Regime::circle)) {
     const FlightAir& air = flown.flight->air;
     Circle circle{
         flown, fit_circle(flown.of(air.airspeed), flown.of(air.samples->motion.heading),
@@ -62,7 +62,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
       circles.push_back(std::move(circle));
     }
   }
-  if (circles.empty()) return not_flown(flights, Regime::circle, result.notes);
+  if (circles.empty()) return regime_not_found(flights, Regime::circle, result.notes);
   std::vector<Estimate> errors;
   for (const Circle& circle : circles) {
     const Estimate& of_fit = circle.fit.airspeed_error;
@@ -79,14 +79,14 @@ CheckResult check_circles(const CheckedFlights& flights) {
                                  circle.flown.mean(air.airspeed));
   };
   const Estimate hpa = mean_of(each_of(circles, sensitivity)) * error;
-  decide({judged(error, min_circle_error, "m/s", "airspeed")}, result);
+  set_verdict({test_statistic(error, min_circle_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "
       "m/s, as if delta-p were off by {}.",
       circles.size(), circles.size() == 1 ? "" : "s", to_port,
       circles.size() - static_cast<std::size_t>(to_port), error.value < 0.0 ? "low" : "high",
       std::abs(error.value), error.error, format_number(hpa, "hPa"));
-  result.cannot_see =
+  result.limitations =
       "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only, "
       "in a bank. Sideslip, an offset of the heading and the angle of attack times the bank are "
       "indistinguishable, and a wind that drifts during the turn appears as an error of the airspeed.";

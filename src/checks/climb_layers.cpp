@@ -48,7 +48,7 @@ double predicted_step(const FlightAir& air, std::size_t i) {
 }
 
 /// Stretches without gaps, missing values and steps of the GPS height.
-std::vector<Segment> steady_stretches(const FlightAir& air, const std::vector<double>& heights) {
+std::vector<Segment> steady_segments(const FlightAir& air, const std::vector<double>& heights) {
   const std::vector<Segment> segments = contiguous_segments(heights, air.time(), air.step());
   std::vector<double> departures(air.size(), nan);
   for (const Segment& segment : segments) {
@@ -73,13 +73,13 @@ std::vector<Segment> steady_stretches(const FlightAir& air, const std::vector<do
 std::vector<double> climb_rates(const FlightAir& air, const std::vector<double>& heights,
                                 const std::vector<Segment>& segments) {
   std::vector<double> rates(air.size(), nan);
-  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(rate_time / air.step())));
+  const auto half_width = static_cast<std::size_t>(std::max(1.0, std::round(rate_time / air.step())));
   for (const Segment& segment : segments) {
     if (segment.count < 2) continue;
     const std::size_t last = segment.first + segment.count - 1;
     for (std::size_t i = segment.first; i <= last; ++i) {
-      const std::size_t before = std::max(segment.first + reach, i) - reach;
-      const std::size_t after = std::min(last, i + reach);
+      const std::size_t before = std::max(segment.first + half_width, i) - half_width;
+      const std::size_t after = std::min(last, i + half_width);
       rates[i] = (heights[after] - heights[before]) / (air.time()[after] - air.time()[before]);
     }
   }
@@ -307,7 +307,7 @@ Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, Eigen::I
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   FlightLayers found;
   const std::vector<double> heights = usable_heights(air);
-  const std::vector<Segment> segments = steady_stretches(air, heights);
+  const std::vector<Segment> segments = steady_segments(air, heights);
   const std::vector<double> climb_rate = climb_rates(air, heights, segments);
   const std::vector<Segment> level =
       parts_where(segments, [&](std::size_t i) { return std::abs(climb_rate[i]) < max_level_rate; });

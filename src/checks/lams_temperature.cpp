@@ -7,7 +7,7 @@
 
 #include <pcor/base/utc.hpp>
 #include <pcor/numerics/noise.hpp>
-#include "checks/flown.hpp"
+#include "checks/manoeuvre_segment.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -162,7 +162,7 @@ ReportTable cloud_table(const CheckedFlights& flights, double outside) {
       "Clouds",
       "ATLAMS minus the thermometer in each cloud of 30 samples or more.",
       {"flight", "start (UTC)", "end", "laser missing, %", "mean, K", "std. error, K", "remark"}};
-  for (const Flown& cloud : all_flown(flights, Regime::cloud)) {
+  for (const ManoeuvreSegment& cloud : segments_of_regime(flights, Regime::cloud)) {
     const FlightAir& air = cloud.flight->air;
     if (!air.laser || air.temperature.empty() || cloud.records.size() < min_in_cloud) continue;
     const std::vector<double> values = cloud.of(difference_of(air));
@@ -174,7 +174,7 @@ ReportTable cloud_table(const CheckedFlights& flights, double outside) {
     std::string remark;
     if (missing > suspect_share)
       remark = "laser mostly missing: an iced window";
-    else if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent)
+    else if (classify(change, min_temperature_difference) == CheckVerdict::inconsistent)
       remark = "suspect";
     table.rows.push_back({air.samples->name, utc_text(cloud.interval.begin),
                           utc_text(cloud.interval.end, "%H:%M:%S"), fmt::format("{:.0f}", 100.0 * missing),
@@ -217,7 +217,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
 
   CheckResult result;
   const Estimate offset = outside.fit.coefficients[0];
-  decide({judged(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
+  set_verdict({test_statistic(offset, min_temperature_difference, "K", "laser minus thermometer")}, result);
   const std::vector<double> clear_values = values_if(all, clear);
   const double noise = noise_floor(clear_values, all.time, all.step).rms;
   result.finding = fmt::format(
@@ -234,7 +234,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     add_number("cloud_offset", "_k", in_cloud_offset, result);
     const Estimate change{in_cloud_offset.value - offset.value,
                           std::hypot(in_cloud_offset.error, offset.error)};
-    if (judge(change, min_temperature_difference) == CheckVerdict::inconsistent) {
+    if (classify(change, min_temperature_difference) == CheckVerdict::inconsistent) {
       result.notes.emplace_back(
           "the difference changes in cloud: the thermometer is wet (reads low), or the laser's window is "
           "iced or drops scatter its light");
@@ -270,7 +270,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
         fmt::format("{} of {} clouds are suspect: see the table of clouds", suspect, clouds.rows.size()));
   }
   if (!clouds.rows.empty()) result.tables.push_back(std::move(clouds));
-  result.cannot_see =
+  result.limitations =
       "The check is independent of the thermometer only to the extent that the fit of delta-p is: the fit "
       "used the thermometer, so an error common to the whole fit is hidden, and with delta-p from LAMS "
       "sample by sample the laser temperature equals the thermometer temperature exactly. An offset of the "

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include <pcor/base/utc.hpp>
-#include "checks/flown.hpp"
+#include "checks/manoeuvre_segment.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -23,7 +23,7 @@ std::string find_layers_of(const FlightAir& air, FlightLayers& found) {
   if (air.temperature.empty())
     return "no thermometer is known; give a model (-m) with recovery_temperature "
            "or ambient_temperature in [variables]";
-  if (std::string trouble = height_problem(air); !trouble.empty()) return trouble;
+  if (std::string problem = height_problem(air); !problem.empty()) return problem;
   found = find_layers(air);
   if (!found.layers.empty()) return "";
   const LayerOptions options;
@@ -96,7 +96,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
   const LayerFit fit = fit_layers(all);
   if (fit.layers == 0) return not_run(result.notes.front().text);  // the reason of the first flight
 
-  std::vector<TestStatistic> numbers{judged(fit.offset, min_thermometer_error, "K", "thermometer")};
+  std::vector<TestStatistic> numbers{test_statistic(fit.offset, min_thermometer_error, "K", "thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation implies a thermometer correction of {}",
                   fit.layers, fit.layers == 1 ? "" : "s", format_number(fit.offset, "K"));
@@ -115,7 +115,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
         "; the layers are too few or too similar ({}) to determine a slope with temperature.", span);
   } else {
     // An uncertain slope leaves the verdict to the mean.
-    TestStatistic over_range = judged(change, min_thermometer_error, "K", "change from " + span);
+    TestStatistic over_range = test_statistic(change, min_thermometer_error, "K", "change from " + span);
     if (over_range.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(over_range));
     result.finding += at_freezing.error > max_useful_error
                           ? fmt::format("; its slope from {} is undetermined ({} per degree).", span,
@@ -127,14 +127,14 @@ CheckResult check_layers(const CheckedFlights& flights) {
                     "and c1 {}; their errors are almost fully correlated",
                     format_number(fit.correction_at(0.0), "K"), format_number(fit.c1, "K/K", 4)));
   }
-  decide(std::move(numbers), result);
+  set_verdict(std::move(numbers), result);
   if (fit.error_scale > 1.0) {
     result.notes.push_back(
         fmt::format("the layers scatter {:.2f} times as much as their errors predict; the errors of the fit "
                     "were multiplied by this factor",
                     fit.error_scale));
   }
-  result.cannot_see =
+  result.limitations =
       "The check cannot separate errors of thermometer, pressure and height: an error of delta-p that grows "
       "with height, and isobars that slope along the track, look like a warmer or colder layer; a constant "
       "error of delta-p largely cancels between the ends of a layer (a few tenths of a kelvin for 1 hPa). An "

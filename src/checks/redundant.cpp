@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "numerics/missing.hpp"
-#include "roles/aircraft_family.hpp"
+#include "roles/variable_naming.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -47,12 +47,13 @@ std::vector<bool> comparable(const CheckedFlight& flight) {
   std::vector<bool> result = flight.air.flying;
   if (!with_avionics(flight)) return result;
   const std::vector<double>& time = flight.air.time();
-  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
+  const auto half_width = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
   const MeasuredPair& pair = flight.measured.front();
   for (const std::vector<double>& pressure : {total_of(pair), pair.static_pressure}) {
     for (std::size_t i = 0; i < result.size(); ++i) {
-      result[i] = result[i] && i >= reach && i + reach < pressure.size() &&
-                  std::abs(pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]) <=
+      result[i] = result[i] && i >= half_width && i + half_width < pressure.size() &&
+                  std::abs(pressure[i + half_width] - pressure[i - half_width]) /
+                          (time[i + half_width] - time[i - half_width]) <=
                       fastest_of_avionics;
     }
   }
@@ -206,9 +207,9 @@ RedundantFit fit_of(const Redundant& both) {
   return fit;
 }
 
-std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size) {
-  return {judged(fit.difference, size, "hPa", "difference of the systems"),
-          judged(fit.across, size, "hPa", "change from the 5th to the 95th percentile of pressure")};
+std::vector<TestStatistic> test_statistics_of(const RedundantFit& fit, double size) {
+  return {test_statistic(fit.difference, size, "hPa", "difference of the systems"),
+          test_statistic(fit.across, size, "hPa", "change from the 5th to the 95th percentile of pressure")};
 }
 
 CheckResult check_total_pressure(const CheckedFlights& flights) {
@@ -229,14 +230,14 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   const RedundantFit statics = fit_of(redundant(flights, of_pair(0, static_of), of_pair(1, static_of)));
 
   CheckResult result;
-  decide(judged_of(fit, min_total_difference), result);
+  set_verdict(test_statistics_of(fit, min_total_difference), result);
   result.finding = fmt::format(
       "The total pressure of {} minus total pressure of {} is {} on average, with slope {:.6f} +- {:.6f} and "
       "rms {:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter "
       "of {:.2f} hPa.",
       two, one, format_number(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
       fit.ordinary.rms, statics.difference.value, statics.scatter);
-  result.cannot_see =
+  result.limitations =
       "The check does not detect static defects, which cancel in the total pressure, and losses common to "
       "both pitots, for example at large angles.";
   add_results(flights, "total-pressure", first_total, second_total,
@@ -260,7 +261,7 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
         fmt::format("{} and the model have too few values at the same time in the air", first->second_name));
   }
   CheckResult result;
-  decide(judged_of(fit, min_static_difference), result);
+  set_verdict(test_statistics_of(fit, min_static_difference), result);
   result.finding = fmt::format(
       "The static pressure of {} minus static pressure of the model is {} on average, with slope {:.6f} +- "
       "{:.6f} and rms {:.3f} hPa about the line.",
@@ -268,13 +269,13 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
       fit.ordinary.slope_error, fit.ordinary.rms);
   if (!first->second_corrected) {
     // The defect of the second system is unknown, so a difference does not contradict the model.
-    withhold("the second system is uncorrected, so it does not test the model", result);
+    mark_inconclusive("the second system is uncorrected, so it does not test the model", result);
     result.finding += fmt::format(
         " The pressure of {} is uncorrected, so the difference includes its defect: --reference "
         "static:OTHER.toml gives its correction.",
         first->second_name);
   }
-  result.cannot_see =
+  result.limitations =
       "The check does not detect errors common to both systems: errors of the reference of both fits (the "
       "scale of LAMS, the temperature), and effects that act equally on both ports.";
   add_results(flights, "static-pressure", own, other,

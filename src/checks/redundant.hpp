@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <pcor/numerics/line_fit.hpp>
-#include "checks/flown.hpp"
+#include "checks/manoeuvre_segment.hpp"
 
 namespace pcor::internal {
 
@@ -29,6 +29,6 @@ struct RedundantFit {
 RedundantFit fit_of(const Redundant& both);
 
 /// Test statistics of a fit: the difference, and its change with the pressure.
-std::vector<TestStatistic> judged_of(const RedundantFit& fit, double size);
+std::vector<TestStatistic> test_statistics_of(const RedundantFit& fit, double size);
 
 }  // namespace pcor::internal

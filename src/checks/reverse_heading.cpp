@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <pcor/physics/constants.hpp>
-#include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
+#include "checks/manoeuvre_segment.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -28,7 +28,7 @@ constexpr double pairs_of_assumption = 2.0;
 constexpr std::size_t min_for_scatter = 3;
 
 struct Leg {
-  Flown flown;
+  ManoeuvreSegment flown;
   LegMean mean{};
 };
 
@@ -50,7 +50,7 @@ double mean_direction(const std::vector<double>& angles) {
   return direction_of(east, north);
 }
 
-LegMean mean_of_leg(const Flown& leg, const std::vector<double>& tail_wind) {
+LegMean mean_of_leg(const ManoeuvreSegment& leg, const std::vector<double>& tail_wind) {
   const FlightAir& air = leg.flight->air;
   const LeastSquares wind = mean_of(leg.of(tail_wind), leg.time(), leg.step());
   LegMean mean;
@@ -67,11 +67,12 @@ LegMean mean_of_leg(const Flown& leg, const std::vector<double>& tail_wind) {
 }
 
 /// Pairs of legs; legs without a partner are reported in the notes.
-std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights, Notes& notes) {
-  std::map<std::pair<const CheckedFlight*, int>, std::vector<Flown>> legs;
-  std::vector<std::pair<Flown, Flown>> pairs;
-  for (Flown& leg : all_flown(flights, Regime::reverse_heading)) {
-    std::vector<Flown>& group = legs[{leg.flight, leg.interval.pair}];
+std::vector<std::pair<ManoeuvreSegment, ManoeuvreSegment>> pairs_of(const CheckedFlights& flights,
+                                                                    Notes& notes) {
+  std::map<std::pair<const CheckedFlight*, int>, std::vector<ManoeuvreSegment>> legs;
+  std::vector<std::pair<ManoeuvreSegment, ManoeuvreSegment>> pairs;
+  for (ManoeuvreSegment& leg : segments_of_regime(flights, Regime::reverse_heading)) {
+    std::vector<ManoeuvreSegment>& group = legs[{leg.flight, leg.interval.pair}];
     group.push_back(std::move(leg));
   }
   for (auto& [key, group] : legs) {
@@ -155,7 +156,7 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
   return table;
 }
 
-Pair evaluated(Flown first, Flown second, const std::vector<double>& tail_wind) {
+Pair evaluated(ManoeuvreSegment first, ManoeuvreSegment second, const std::vector<double>& tail_wind) {
   Pair pair{{std::move(first)}, {std::move(second)}};
   for (Leg* const leg : {&pair.first, &pair.second}) leg->mean = mean_of_leg(leg->flown, tail_wind);
   pair.result = pair_of(pair.first.mean, pair.second.mean);
@@ -203,7 +204,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
       pairs.push_back(std::move(pair));
     }
   }
-  if (pairs.empty()) return not_flown(flights, Regime::reverse_heading, result.notes);
+  if (pairs.empty()) return regime_not_found(flights, Regime::reverse_heading, result.notes);
   const Mean mean = mean_over(pairs);
   const Estimate& error = mean.airspeed;
   const auto as_other = [&](double LegPair::*factor) {
@@ -211,14 +212,14 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   };
   const Estimate hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimate kelvin = as_other(&LegPair::temperature_per_airspeed);
-  decide({judged(error, min_airspeed_error, "m/s", "airspeed")}, result);
+  set_verdict({test_statistic(error, min_airspeed_error, "m/s", "airspeed")}, result);
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {} instead of zero: the true airspeed is too {} "
       "by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by {}.",
       pairs.size(), pairs.size() == 1 ? "" : "s",
       format_number({-2.0 * error.value, 2.0 * error.error}, "m/s"), error.value < 0.0 ? "low" : "high",
       std::abs(error.value), error.error, format_number(hpa, "hPa"), format_number(kelvin, "K", 1));
-  result.cannot_see =
+  result.limitations =
       "The check cannot separate errors of pressure, temperature and laser: it depends on the airspeed only. "
       "If pressures were corrected sample by sample with LAMS, or the model was fitted to LAMS, the airspeed "
       "is the LAMS airspeed for any temperature, and the check tests LAMS alone. An error of the airspeed "

@@ -6,8 +6,8 @@
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/geodesy.hpp>
-#include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
+#include "checks/manoeuvre_segment.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spectrum.hpp"
 #include "roles/resolution.hpp"
@@ -181,15 +181,16 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   const double per_speed = pressure_per_speed(flights);
 
   CheckResult result;
-  decide({judged(floor, max_noise, "hPa", "white noise")}, result);
+  set_verdict({test_statistic(floor, max_noise, "hPa", "white noise")}, result);
   if (result.verdict == CheckVerdict::inconsistent && !(fall.value - margin * fall.error > flattest_fall))
-    withhold("the spectrum does not flatten, so the power is an upper limit of the noise", result);
+    mark_inconclusive("the spectrum does not flatten, so the power is an upper limit of the noise", result);
   const double step = coarsest_step(flights);
   if (step >= coarse_pressure) {
-    withhold(fmt::format("the static pressure is recorded in steps of {:.2g} hPa, which cause {:.2g} hPa of "
-                         "noise: the noise of its sensor cannot be determined",
-                         step, rounding_of(step)),
-             result);
+    mark_inconclusive(
+        fmt::format("the static pressure is recorded in steps of {:.2g} hPa, which cause {:.2g} hPa of "
+                    "noise: the noise of its sensor cannot be determined",
+                    step, rounding_of(step)),
+        result);
   }
   result.finding =
       fmt::format("At the highest frequencies {} has the power of white noise of {:.3f} +- {:.3f} hPa",
@@ -200,7 +201,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
                                 format_number(fall, ""), in_words(fall));
   const auto has_series = [source](const CheckedFlight& flight) { return has_value(source->series(flight)); };
   note_other_steps(flights, spectrum.step, has_series, result.notes);
-  result.cannot_see =
+  result.limitations =
       "The check cannot identify the noisy sensor: pressures, thermometer, laser and the air between laser "
       "and pitot tube add up. Noise of the transducers and small eddies are indistinguishable unless the "
       "spectrum flattens, and means over the sample interval hide part of both. Errors that last longer than "

@@ -5,8 +5,8 @@
 
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
-#include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
+#include "checks/manoeuvre_segment.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -31,7 +31,7 @@ struct Trend {
 };
 
 struct SpeedRun {
-  Flown flown;
+  ManoeuvreSegment flown;
   double airspeed_range = 0.0;  ///< m/s
   Estimate dynamic_slope{};     ///< slope of DVALUE, m per hPa of dynamic pressure
   Trend height;                 ///< DVALUE, m
@@ -42,8 +42,8 @@ struct SpeedRun {
 /// @param fitted values for the slope, from which a known part may be subtracted
 /// @param per_unit error of delta-p for one unit of the series, hPa
 /// @param min_drift of the series from end to end that its samples do not show as noise
-Trend trend_of(const std::vector<double>& values, const std::vector<double>& fitted, const Flown& flown,
-               double airspeed_range, double per_unit, double min_drift) {
+Trend trend_of(const std::vector<double>& values, const std::vector<double>& fitted,
+               const ManoeuvreSegment& flown, double airspeed_range, double per_unit, double min_drift) {
   Trend trend;
   trend.scatter = standard_deviation(values);
   const auto [minimum, maximum] = range_of(values);
@@ -60,7 +60,7 @@ Trend trend_of(const std::vector<double>& values, const std::vector<double>& fit
 /// GPS height above the height that the pressure of the model implies in air of the temperature of the run,
 /// m. The D-value assumes the standard temperature, so a climb changes it without an error of the pressure.
 /// @param scale height in which the pressure falls by a factor e, m  @param pressure mean of the run, hPa
-std::vector<double> height_above_pressure(const Flown& flown, bool is_missing, double scale,
+std::vector<double> height_above_pressure(const ManoeuvreSegment& flown, bool is_missing, double scale,
                                           double pressure) {
   const FlightAir& air = flown.flight->air;
   std::vector<double> height = flown.of(is_missing ? std::vector<double>() : air.geopotential_height);
@@ -69,7 +69,7 @@ std::vector<double> height_above_pressure(const Flown& flown, bool is_missing, d
   return height;
 }
 
-SpeedRun run_of(const Flown& flown) {
+SpeedRun run_of(const ManoeuvreSegment& flown) {
   const FlightAir& air = flown.flight->air;
   SpeedRun run;
   run.flown = flown;
@@ -97,7 +97,7 @@ bool known(const Trend& trend) { return std::isfinite(trend.slope.value); }
 /// accurate one decides.
 Estimate decisive(const Estimate& height, const Estimate& wind) {
   for (const Estimate& each : {height, wind}) {
-    if (judge(each, min_run_change) == CheckVerdict::inconsistent) return each;
+    if (classify(each, min_run_change) == CheckVerdict::inconsistent) return each;
   }
   return !(height.error <= wind.error) && std::isfinite(wind.error) ? wind : height;
 }
@@ -131,10 +131,10 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   if (std::none_of(flights.begin(), flights.end(),
                    [](const CheckedFlight& flight) { return !flight.air.airspeed.empty(); }))
     return not_run("no flight " + missing_for_tail_wind(flights));
-  const std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
-  if (flown.empty()) return not_flown(flights, Regime::speed_run);
+  const std::vector<ManoeuvreSegment> flown = segments_of_regime(flights, Regime::speed_run);
+  if (flown.empty()) return regime_not_found(flights, Regime::speed_run);
   std::vector<SpeedRun> runs;
-  for (const Flown& each : flown) {
+  for (const ManoeuvreSegment& each : flown) {
     SpeedRun run = run_of(each);
     if (known(run.height) || known(run.wind)) runs.push_back(std::move(run));
   }
@@ -151,7 +151,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
   const Estimate across = decisive(height, wind);
-  decide({judged(across, min_run_change, "hPa", "change from slow to fast")}, result);
+  set_verdict({test_statistic(across, min_run_change, "hPa", "change from slow to fast")}, result);
   const auto average = [&](Trend SpeedRun::*trend, double Trend::*number) {
     return mean_of(each_of(runs, [=](const SpeedRun& run) { return run.*trend.*number; }));
   };
@@ -174,7 +174,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
     result.notes.push_back("the tail wind is not used: no flight " + missing_for_tail_wind(flights));
   }
   result.finding += ".";
-  result.cannot_see =
+  result.limitations =
       "The check does not detect errors that are constant over the speed, such as an offset of a transducer, "
       "and cannot separate angle of attack, thrust and dynamic pressure, which change together in these "
       "runs.";
@@ -202,7 +202,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                           std::vector<double> FlightAir::*series, bool is_departure) {
     result.columns.push_back(column_in(flights, name, title, unit, runs, [=](const SpeedRun& run) {
       const std::vector<double> values = run.flown.of(run.flown.flight->air.*series);
-      return is_departure ? less_mean(values) : values;
+      return is_departure ? subtract_mean(values) : values;
     }));
   };
   column("speed-run airspeed", "true airspeed", "m/s", &FlightAir::airspeed, false);

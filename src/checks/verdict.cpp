@@ -16,7 +16,7 @@ constexpr double likely = 2.0;
 /// Relative size of a number, in tolerances; for an inconsistent number the error is not subtracted.
 double reach_of(const TestStatistic& key) {
   const double doubt = key.verdict == CheckVerdict::inconsistent ? 0.0 : likely * key.standard_error;
-  return (std::abs(key.value) + doubt) / key.matters;
+  return (std::abs(key.value) + doubt) / key.tolerance;
 }
 
 /// Reason for the verdict on a number.
@@ -24,34 +24,34 @@ std::string reason_of(const TestStatistic& key) {
   const double magnitude = std::abs(key.value);
   const auto within = [&](const char* words) {
     return fmt::format("{:.3f} {} with two standard errors, {} the tolerance of {:g} {}",
-                       magnitude + likely * key.standard_error, key.unit, words, key.matters, key.unit);
+                       magnitude + likely * key.standard_error, key.unit, words, key.tolerance, key.unit);
   };
   const auto above = [&](const char* words) {
     return fmt::format("above the tolerance of {0:g} {1}{2} above three standard errors, {3:.3f} {1}",
-                       key.matters, key.unit, words, significant * key.standard_error);
+                       key.tolerance, key.unit, words, significant * key.standard_error);
   };
   const std::string why = key.verdict == CheckVerdict::inconsistent ? above(" and")
                           : key.verdict == CheckVerdict::consistent ? within("within")
-                          : magnitude > key.matters                 ? above(", but not")
+                          : magnitude > key.tolerance               ? above(", but not")
                                                                     : within("not within");
   return fmt::format("{:+.3f} +- {:.3f} {}, {}: {}", key.value, key.standard_error, key.unit, key.what, why);
 }
 
 }  // namespace
 
-CheckVerdict judge(const Estimate& number, double size) {
+CheckVerdict classify(const Estimate& number, double size) {
   const double magnitude = std::abs(number.value);
   if (magnitude > size && magnitude > significant * number.error) return CheckVerdict::inconsistent;
   if (magnitude + likely * number.error <= size) return CheckVerdict::consistent;
   return CheckVerdict::inconclusive;
 }
 
-TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what) {
-  return {number.value, number.error, size, std::move(unit), std::move(what), judge(number, size)};
+TestStatistic test_statistic(const Estimate& number, double size, std::string unit, std::string what) {
+  return {number.value, number.error, size, std::move(unit), std::move(what), classify(number, size)};
 }
 
-void decide(std::vector<TestStatistic> numbers, CheckResult& result) {
-  result.ran = true;
+void set_verdict(std::vector<TestStatistic> numbers, CheckResult& result) {
+  result.was_run = true;
   const auto has = [&](CheckVerdict verdict) {
     return std::any_of(numbers.begin(), numbers.end(),
                        [verdict](const TestStatistic& number) { return number.verdict == verdict; });
@@ -65,14 +65,14 @@ void decide(std::vector<TestStatistic> numbers, CheckResult& result) {
     if (decisive == nullptr || reach_of(number) > reach_of(*decisive)) decisive = &number;
   }
   result.key = *decisive;
-  result.decided = reason_of(result.key);
-  result.judged = std::move(numbers);
+  result.explanation = reason_of(result.key);
+  result.statistics = std::move(numbers);
 }
 
-void withhold(const std::string& reason, CheckResult& result) {
+void mark_inconclusive(const std::string& reason, CheckResult& result) {
   result.verdict = CheckVerdict::inconclusive;
-  result.decided += ", but " + reason;
-  result.withheld = reason;
+  result.explanation += ", but " + reason;
+  result.inconclusive_reason = reason;
 }
 
 void add_number(const std::string& name, const std::string& unit, const Estimate& number,

@@ -12,18 +12,18 @@ namespace pcor::internal {
 ///
 /// Inconsistent: larger than `size` and than three standard errors. Consistent: not larger than `size`, and
 /// more than two standard errors below it. Otherwise, and for NaN, inconclusive.
-CheckVerdict judge(const Estimate& number, double size);
+CheckVerdict classify(const Estimate& number, double size);
 
 /// Number with its verdict, unit and description.
-TestStatistic judged(const Estimate& number, double size, std::string unit, std::string what);
+TestStatistic test_statistic(const Estimate& number, double size, std::string unit, std::string what);
 
 /// Sets the verdict of a check that was run from several numbers: inconsistent if one is, otherwise
 /// inconclusive if one is. The deciding number, with the largest ratio to its tolerance, becomes the key
-/// number, and `decided` states the reason.
-void decide(std::vector<TestStatistic> numbers, CheckResult& result);
+/// number, and `explanation` states the reason.
+void set_verdict(std::vector<TestStatistic> numbers, CheckResult& result);
 
 /// Sets a verdict to inconclusive, for any number, with the given `reason`.
-void withhold(const std::string& reason, CheckResult& result);
+void mark_inconclusive(const std::string& reason, CheckResult& result);
 
 /// Adds a number and its standard error: "offset_k" and "offset_stderr_k" for the name "offset" and the unit
 /// "_k".

@@ -204,18 +204,18 @@ NoiseFlight noise_flight_of(const Binning& bins) {
 /// Adds the variances by the noise to the sums of one model. The drift components are common to all flights,
 /// from at most six of them; the level is the level of each flight.
 /// @param records of the flights of this rank, for each model
-void add_variances(std::size_t model, const FlightPartition& share,
+void add_variances(std::size_t model, const FlightPartition& partition,
                    const std::vector<std::vector<SummedRecords>>& records, std::vector<FlightPart>& parts) {
   BinnedFlights flights;
   for (std::size_t f = 0; f < parts.size(); ++f) {
     static const BinnedResidual none;
-    const BinnedResidual& own = share.is_local(f) ? records[f][model].residual : none;
+    const BinnedResidual& own = partition.is_local(f) ? records[f][model].residual : none;
     flights.bins.push_back(own.bins());
     flights.residuals.push_back(own.means());
     flights.reference.push_back(0);
   }
-  flights.outlines =
-      share.of_each_flight<NoiseFlight>([&](std::size_t f) { return noise_flight_of(flights.bins[f]); });
+  flights.outlines = partition.all_gather_flights<NoiseFlight>(
+      [&](std::size_t f) { return noise_flight_of(flights.bins[f]); });
   ResidualSums all;
   for (const FlightPart& part : parts) all.add(part.models[model].all);
   const double mean = all.statistics().mean;
@@ -223,16 +223,16 @@ void add_variances(std::size_t model, const FlightPartition& share,
   fit.columns = [&](std::size_t f) { return Eigen::MatrixXd::Ones(flights.residuals[f].size(), 1); };
   fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
   const std::vector<NoiseModel> noise = noise_of_flights(
-      share, flights, fit, [&share](const auto& bins, const auto& columns, const auto& left) {
+      partition, flights, fit, [&partition](const auto& bins, const auto& columns, const auto& left) {
         constexpr std::size_t enough = 6;
         std::vector<NoiseFlight> outlines;
         for (const Binning& own : bins) outlines.push_back(noise_flight_of(own));
         const std::vector<std::size_t> few = flights_for_noise(outlines, enough);
         return expected_noise(entries_of(bins, few), entries_of(columns, few), entries_of(left, few),
-                              share.threads());
+                              partition.threads());
       });
-  const auto variances = share.map<std::vector<double>>(
-      share.threads(), [](std::size_t f) { return f; },
+  const auto variances = partition.map<std::vector<double>>(
+      partition.threads(), [](std::size_t f) { return f; },
       [&](std::size_t f, std::size_t) {
         const SummedRecords& summed = records[f][model];
         std::vector<double> result;
@@ -260,7 +260,7 @@ void separate_atmosphere(const Pairing& pairing, const FlightSamples& samples,
 
 /// Compares models with a reference. Without samples the result has no models.
 Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
-                        const CompareOptions& options, const std::function<void()>& tell) {
+                        const CompareOptions& options, const std::function<void()>& report_progress) {
   const Reference& first = *pairings[by_rank(pairings).front()].reference;
   Comparison result;
   result.reference = first.description();
@@ -287,10 +287,10 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   };
   const bool keeps_all = flights.size() <= options.max_series;
   std::vector<std::vector<SummedRecords>> records(flights.size());
-  auto parts = flights.share().map<FlightPart>(
-      flights.share().threads(),
+  auto parts = flights.partition().map<FlightPart>(
+      flights.partition().threads(),
       [&](std::size_t number) {
-        tell();
+        report_progress();
         return read(number);
       },
       [&](std::size_t number, const SamplesOfPairings& samples) {
@@ -320,7 +320,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
                       "does; the residual of '{}' is the difference of two laws and does not test it",
                       reference->name(), own, compared->name)));
     }
-    add_variances(m, flights.share(), records, parts);
+    add_variances(m, flights.partition(), records, parts);
     ModelSums sums;
     std::vector<PartStatistics> of_flights;
     for (const FlightPart& part : parts) sums.add(part.models[m]);
@@ -334,7 +334,8 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;
   const std::vector<std::size_t> shown = to_show(parts, options.max_series);
-  for (FlightPart& part : flights.share().of_entries(shown).of_each_flight<FlightPart>([&](std::size_t k) {
+  for (FlightPart& part :
+       flights.partition().of_entries(shown).all_gather_flights<FlightPart>([&](std::size_t k) {
          std::vector<SummedRecords> not_needed;
          return make(read(shown[k]), true, not_needed);
        }))
@@ -351,11 +352,11 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
   for (const ComparedModel& compared : models) first_of(compared.references);
   const std::vector<Field> fields = fields_of(models);
   flights.require_one_aircraft();
-  const std::function<void()> tell = [&, done = std::size_t{0}]() mutable {
+  const std::function<void()> report_progress = [&, done = std::size_t{0}]() mutable {
     ++done;
-    if (options.progress) options.progress(done, fields.size() * flights.share().local_count());
+    if (options.progress) options.progress(done, fields.size() * flights.partition().local_count());
   };
-  Comparison result = compare_with(fields.front().pairings, flights, options, tell);
+  Comparison result = compare_with(fields.front().pairings, flights, options, report_progress);
   if (result.masks[0] == 0) {
     throw Error(
         Error::Code::samples,
@@ -364,7 +365,7 @@ Comparison compare(const FlightSet& flights, const std::vector<ComparedModel>& m
                     flights.size() == 1 ? flights.path(0).string() : "the flights", mask_text(result.masks)));
   }
   for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
-    Comparison further = compare_with(field->pairings, flights, options, tell);
+    Comparison further = compare_with(field->pairings, flights, options, report_progress);
     if (further.masks[0] == 0) {
       result.notes.push_back(fmt::format("no samples remain to compare with the {}: {}", further.reference,
                                          mask_text(further.masks)));

@@ -11,7 +11,7 @@
 #include <pcor/compare/compare.hpp>
 #include "numerics/binned_residual.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/packed_residuals.hpp"
+#include "residuals/serialization.hpp"
 
 /// Serialization of statistics for other ranks.
 namespace cereal {

@@ -24,7 +24,7 @@ constexpr int max_rounds = 4;
 /// Candidates removed from the residual before the first noise estimate; they need not be effects.
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
-constexpr double stretch_time = 300.0;  // s
+constexpr double block_time = 300.0;  // s
 /// Maximum share of one held-out part: of a flight of a few minutes the rest would not determine a fit.
 constexpr double max_share_of_part = 0.8;
 
@@ -39,31 +39,32 @@ bool are_equal(const Matrices& some, const Matrices& others) {
 }  // namespace
 
 std::size_t held_out_part(const FlightSamples& samples, double time) {
-  return static_cast<std::size_t>(std::fmod(std::floor((time - samples.time.front()) / stretch_time),
-                                            static_cast<double>(held_out_parts)));
+  return static_cast<std::size_t>(
+      std::fmod(std::floor((time - samples.time.front()) / block_time), static_cast<double>(held_out_parts)));
 }
 
 Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
                    const std::vector<Eigen::VectorXd>& added, Eigen::VectorXd prior)
-    : share_(columns.share),
-      first_share_(columns.share),  // replaced below, where the flights against the first reference are known
+    : partition_(columns.partition),
+      first_partition_(
+          columns.partition),  // replaced below, where the flights against the first reference are known
       groups_(std::move(groups)),
       prior_(std::move(prior)) {
   base_ = columns.flights.front().base.cols();
   if (prior_.size() == 0) prior_ = Eigen::VectorXd::Zero(base_);
-  binned_ = in_bins(share_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
+  binned_ = in_bins(partition_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
   for (FlightColumns& flight : columns.flights) {
     if (flight.is_by_gps) nuisances_ = gps_shared_nuisances;
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
-  first_share_ = share_.part(0, flights_.size());
+  first_partition_ = partition_.part(0, flights_.size());
   known_noise_.resize(reference_count());
   const Eigen::Index columns_count = binned_.columns.front().cols();
   for (const Eigen::VectorXd& effect : added) {
     added_.emplace_back(Eigen::VectorXd::Zero(columns_count));
     added_.back().head(base_) = effect;
   }
-  const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
+  const auto normal = partition_.all_reduce_flights<Eigen::MatrixXd>([this](std::size_t f) {
     if (flight(f).is_by_gps) return Eigen::MatrixXd(Eigen::MatrixXd::Zero(base_, base_ + 1));
     const auto base = binned_.columns[f].leftCols(base_);
     Eigen::MatrixXd part(base_, base_ + 1);
@@ -77,7 +78,7 @@ Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
   const Eigen::VectorXd start = pseudo_solution(normal.leftCols(base_), normal.rightCols(1));
   const double by_effects = search_from(start, true);
   const bool drifts =
-      std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
+      std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.has_drift(); });
   if (result_.chosen.empty() || drifts) {
     const SearchResult result = result_;
     const double by_drift = search_from(start, false);
@@ -117,7 +118,7 @@ double Analysis::variance_factor_with(const std::vector<std::size_t>& chosen) co
   const Eigen::VectorXd estimate = covariance * information.col(count).head(count);
 
   using Halves = std::array<Eigen::MatrixXd, 2>;
-  const auto halves = share_.of_each_flight<Halves>([&](std::size_t f) {
+  const auto halves = partition_.all_gather_flights<Halves>([&](std::size_t f) {
     Halves own;
     own.fill(Eigen::MatrixXd::Zero(count + 1, count + 1));
     if (flight(f).gps.rows.size() == 0) return own;
@@ -194,7 +195,7 @@ Eigen::VectorXd Analysis::coefficients(const std::vector<std::size_t>& groups,
 }
 
 std::vector<double> Analysis::added(std::size_t flight, const Eigen::VectorXd& coefficients) const {
-  return only_at(sum_of_columns(this->flight(flight), coefficients), binned_.bins[flight].records());
+  return select_samples(sum_of_columns(this->flight(flight), coefficients), binned_.bins[flight].records());
 }
 
 std::vector<double> Analysis::added_by(std::size_t flight, std::size_t group,
@@ -207,7 +208,7 @@ std::vector<double> Analysis::added_by(std::size_t flight, std::size_t group,
 
 void Analysis::replace_outliers(const Eigen::VectorXd& coefficients) {
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
-    if (!share_.is_local(f)) continue;
+    if (!partition_.is_local(f)) continue;
     FlightColumns& flight = f < flights_.size() ? flights_[f] : further_[f - flights_.size()];
     std::size_t count = 0;
     const std::vector<double> predicted = added(f, coefficients);
@@ -223,9 +224,9 @@ std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& gr
                                               const FindNoise& find) const {
   const std::vector<Eigen::Index> indices = indices_of(groups);
   return noise_of_flights(
-      share_, binned_,
+      partition_, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, indices); },
-       [&](std::size_t f) { return left_of(f, coefficients); }, digest_of(packed(coefficients))},
+       [&](std::size_t f) { return left_of(f, coefficients); }, digest_of(serialized(coefficients))},
       find);
 }
 
@@ -245,10 +246,10 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
         if (is_rough || has_white_rows) return estimate_noise(bins, residuals);
         KnownNoise& known = known_noise_[number];
         if (!are_equal(known.columns, columns) || !are_equal(known.residuals, residuals))
-          known = {columns, residuals, internal::find_noise(bins, columns, residuals, share_.threads())};
+          known = {columns, residuals, internal::find_noise(bins, columns, residuals, partition_.threads())};
         if (number == 0) drift_gain_ = known.found.drift_gain;
         likelihood_ += known.found.likelihood;
-        return with_slower_noise(known.found.model);  // this likelihood includes only what the flights show
+        return extrapolate_drift(known.found.model);  // this likelihood includes only what the flights show
       });
   coefficients_ = coefficients;
 }
@@ -268,8 +269,8 @@ NoiseModel Analysis::noise_beside_offsets() const {
                       with_offsets[f] = side_by_side(columns[f], own);
                       if (residuals[f].size() > 0) about_means[f].array() -= residuals[f].mean();
                     }
-                    return with_slower_noise(
-                        internal::find_noise(bins, with_offsets, about_means, share_.threads()).model);
+                    return extrapolate_drift(
+                        internal::find_noise(bins, with_offsets, about_means, partition_.threads()).model);
                   });
   return noise_of_first_reference(binned_, noise);
 }
@@ -291,7 +292,7 @@ std::vector<Eigen::MatrixXd> Analysis::find_shape_uncertainty(const std::vector<
   effects.insert(effects.end(), added_.begin(), added_.end());
   std::vector<const FlightColumns*> flights;
   for (std::size_t f = 0; f < flight_count(); ++f) flights.push_back(&flight(f));
-  return shape_uncertainty(share_, flights, binned_, effects);
+  return shape_uncertainty(partition_, flights, binned_, effects);
 }
 
 WhitenedSystem Analysis::whiten_all() const {
@@ -321,9 +322,9 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns,
           binned_.bins[f].bins()[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next, 1) - 1)]);
     }
   }
-  WhitenedSystem system = find_scores(share_, binned_.bins, all, binned_.residuals, noise_, white);
+  WhitenedSystem system = whiten_system(partition_, binned_.bins, all, binned_.residuals, noise_, white);
   if (nuisances_ > 0) {
-    const auto rows = share_.sum_of_each_flight<double>(
+    const auto rows = partition_.all_reduce_flights<double>(
         [&white](std::size_t f) { return static_cast<double>(white[f].rows.rows()); });
     system.row_count -= static_cast<std::size_t>(rows * (1.0 - 1.0 / variance_factor_));
   }
@@ -335,7 +336,7 @@ void Analysis::find_search(const std::vector<std::size_t>& chosen) {
   scores_ = std::make_unique<WhitenedSystem>(whiten_all());
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
-    if (!share_.is_local(f)) continue;
+    if (!partition_.is_local(f)) continue;
     const Eigen::MatrixXd& rows = scores_->rows[f];
     white_noise_[f] = rows.rightCols(1) - rows.leftCols(coefficients_.size()) * coefficients_;
   }
@@ -350,7 +351,7 @@ void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   if (further_.empty()) return;
   std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
-    if (!share_.is_local(later) || flight(later).is_by_gps) continue;
+    if (!partition_.is_local(later) || flight(later).is_by_gps) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       if (flight(earlier).file == flight(later).file)
         internal::take_out_common_noise(binned_.bins, earlier, later, left, scores);
@@ -434,7 +435,7 @@ Eigen::MatrixXd Analysis::rows_of_refit(std::size_t flight, const std::vector<Ei
 
 Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> indices = indices_of(groups);
-  const auto sums = first_share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  const auto sums = first_partition_.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const Eigen::MatrixXd rows = rows_of_refit(f, indices);
     PartialSums own(1, rows.cols());
     own.products[0] = rows.transpose() * rows;
@@ -453,7 +454,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   };
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // Whitened rows of each part first, then unwhitened ones.
-  const auto sums = share_.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  const auto sums = partition_.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const Eigen::MatrixXd all = rows_of_refit(f, indices);
     white[f] = flight(f).is_by_gps ? all : whitened(all, binned_.bins[f], noise_[f], 0);
     PartialSums own(2 * held_out_parts, width);
@@ -503,7 +504,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
 }
 
 double Analysis::rms_of_parts(const std::vector<Eigen::VectorXd>& coefficients) const {
-  const auto sum = first_share_.sum_of_each_flight<SquareSum>([&](std::size_t f) {
+  const auto sum = first_partition_.all_reduce_flights<SquareSum>([&](std::size_t f) {
     SquareSum of_flight;
     const FlightColumns& flight = flights_[f];
     std::vector<std::vector<double>> predicted;

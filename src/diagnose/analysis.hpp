@@ -48,9 +48,9 @@ class Analysis {
            const std::vector<Eigen::VectorXd>& added = {}, Eigen::VectorXd prior = {});
 
   /// Partition of the flights against the first reference.
-  const FlightPartition& share() const { return first_share_; }
+  const FlightPartition& partition() const { return first_partition_; }
   /// Partition of all entries, one per flight and reference.
-  const FlightPartition& whole_share() const { return share_; }
+  const FlightPartition& whole_partition() const { return partition_; }
   const std::vector<FlightColumns>& flights() const { return flights_; }
   std::size_t flight_count() const { return binned_.bins.size(); }
   std::size_t reference_count() const { return binned_.reference.back() + 1; }
@@ -166,8 +166,8 @@ class Analysis {
   /// Positions of the columns of base and groups.
   std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& groups) const;
 
-  FlightPartition share_;
-  FlightPartition first_share_;
+  FlightPartition partition_;
+  FlightPartition first_partition_;
   std::vector<FlightColumns> flights_{};
   std::vector<FlightColumns> further_{};  // against references after the first
   std::vector<ColumnGroup> groups_;

@@ -9,7 +9,7 @@
 #include <pcor/realtime/chain.hpp>
 #include "campaign/model_parameters.hpp"
 #include "campaign/reference_id.hpp"
-#include "flight/trouble_with_values.hpp"
+#include "flight/value_problem.hpp"
 #include "model_io/parameter_unit.hpp"
 #include "parallel/flight_partition.hpp"
 #include "roles/model_inputs.hpp"
@@ -19,28 +19,28 @@ namespace pcor::internal {
 namespace {
 
 /// Aircraft family whose variable names a model uses on some flights.
-const VariableNaming& family_of(const ModelDefinition& file, const FlightSet& flights) {
-  if (!file.roles_from.empty()) return family_named(file.roles_from);
-  return flights.size() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
+const VariableNaming& naming_of(const ModelDefinition& file, const FlightSet& flights) {
+  if (!file.roles_from.empty()) return naming_by_name(file.roles_from);
+  return flights.size() == 0 ? known_namings().front() : naming_by_name(flights.outlines().front().naming);
 }
 
 /// Fills roles without a variable in the model with the usual variables, if every flight records them in a
 /// suitable unit. Flow angles stay unchanged if the model computes them from the radome.
 void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
-  const VariableNaming& family = family_of(file, flights);
+  const VariableNaming& naming = naming_of(file, flights);
   std::vector<std::pair<Quantity, std::string>> usual;  // most usual variable of each role first
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
     if (file.variables.count(role) != 0) continue;
     if (role == Quantity::attack && file.model.attack_radome.is_calibrated()) continue;
     if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
-    for (std::string& variable : usual_variables(family, role)) usual.emplace_back(role, std::move(variable));
+    for (std::string& variable : usual_variables(naming, role)) usual.emplace_back(role, std::move(variable));
   }
-  const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
+  const auto recorded = flights.partition().all_gather_flights<std::vector<bool>>([&](std::size_t number) {
     std::vector<bool> has;
     for (const auto& [role, variable] : usual)
       has.push_back(
-          has_values(flights[number], variable, std::string(info_of(role).unit), family.unit_of(variable)));
+          has_values(flights[number], variable, std::string(info_of(role).unit), naming.unit_of(variable)));
     return has;
   });
   std::size_t position = 0;
@@ -50,7 +50,7 @@ void name_usual_variables(ModelDefinition& file, const FlightSet& flights) {
     if (!std::all_of(recorded.begin(), recorded.end(), [k](const std::vector<bool>& has) { return has[k]; }))
       continue;
     file.variables[role] = variable;
-    if (std::string unit = family.unit_of(variable); !unit.empty()) file.units[role] = std::move(unit);
+    if (std::string unit = naming.unit_of(variable); !unit.empty()) file.units[role] = std::move(unit);
   }
 }
 
@@ -122,12 +122,12 @@ std::string missing_variable(const ModelEffect& effect, const FlightSet& flights
   if (!formula) return "";
   for (const std::string& name : formula->variables()) {
     if (quantity_named(name) != Quantity::count) continue;
-    for (std::string& trouble : flights.share().of_each_flight<std::string>([&](std::size_t number) {
+    for (std::string& problem : flights.partition().all_gather_flights<std::string>([&](std::size_t number) {
            const Flight& flight = flights[number];
            return flight.has(name) ? value_problem(flight, name)
                                    : fmt::format("{} has no variable {}", flight.path().string(), name);
          })) {
-      if (!trouble.empty()) return std::move(trouble);
+      if (!problem.empty()) return std::move(problem);
     }
   }
   return "";

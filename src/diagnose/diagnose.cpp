@@ -26,6 +26,7 @@
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/serialization.hpp"
 
 namespace pcor {
 
@@ -49,7 +50,7 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis, const Eigen::V
   const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
   std::vector<FlightDiagnosis> flights(analysis.flights().size());
   for (std::size_t f = 0; f < flights.size(); ++f) {
-    if (!analysis.share().is_local(f)) continue;
+    if (!analysis.partition().is_local(f)) continue;
     const FlightColumns& columns = analysis.flights()[f];
     FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
@@ -78,11 +79,11 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
         kept.push_back(f);
     }
   } else {
-    kept = flights_to_show(analysis.share().of_each_flight<FlightToShow>([&](std::size_t f) {
+    kept = flights_to_show(analysis.partition().all_gather_flights<FlightToShow>([&](std::size_t f) {
       return FlightToShow{flights[f].samples->time.front(), square_sum_of(flights[f].before).rms()};
     }));
   }
-  auto series = analysis.share().of_entries(kept).of_each_flight<FlightDiagnosis>(
+  auto series = analysis.partition().of_entries(kept).all_gather_flights<FlightDiagnosis>(
       [&](std::size_t k) { return std::move(flights[kept[k]]); });
   flights.assign(flights.size(), {});
   for (std::size_t k = 0; k < kept.size(); ++k) flights[kept[k]] = std::move(series[k]);
@@ -106,9 +107,9 @@ std::vector<CoefficientEstimate> own_of(const Analysis& analysis, const std::vec
   return own;
 }
 
-double noise_with_findings(const FlightPartition& share, const std::vector<FlightDiagnosis>& flights) {
+double noise_with_findings(const FlightPartition& partition, const std::vector<FlightDiagnosis>& flights) {
   ResidualSums sums;
-  for (const ResidualSums& one : share.of_each_flight<ResidualSums>([&flights](std::size_t f) {
+  for (const ResidualSums& one : partition.all_gather_flights<ResidualSums>([&flights](std::size_t f) {
          const std::vector<double>& after = flights[f].after;
          return sums_of_samples(after, noise_of_flight(*flights[f].samples, after));
        })) {
@@ -138,13 +139,13 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
   std::vector<std::size_t> later = used_samples(flight.mask);
   later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(first.size()));
   const NoiseFloor noise = noise_of_flight(samples, masked(flight.exact, flight.mask, Mask::none));
-  const std::vector<double> residual = only_at(flight.exact, first);
+  const std::vector<double> residual = select_samples(flight.exact, first);
   found.used = sums_of_samples(residual, noise);
   found.blocks = means_of_blocks(samples, residual);
   const std::vector<double> out = masked(flight.exact, flight.mask, Mask::flaps);
   if (has_value(out)) found.with_flaps = sums_of_flight(samples, out);
   if (later.empty()) return found;
-  const std::vector<double> held_out = only_at(flight.exact, later);
+  const std::vector<double> held_out = select_samples(flight.exact, later);
   found.held_out = sums_of_flight(samples, held_out, noise).statistics();
   found.held_out_blocks = means_of_blocks(samples, held_out).size();
   return found;
@@ -155,7 +156,7 @@ void add_statistics(const PartitionedColumns& columns, double share, Diagnosis& 
   ResidualSums used;
   ResidualSums with_flaps;
   FittedMeans means;
-  const auto found = columns.share.of_each_flight<GivenStatistics>([&](std::size_t f) {
+  const auto found = columns.partition.all_gather_flights<GivenStatistics>([&](std::size_t f) {
     const FlightColumns& flight = columns.flights[f];
     return flight.reference == 0 ? statistics_of(flight, share) : GivenStatistics();
   });
@@ -181,7 +182,7 @@ void add_statistics(const PartitionedColumns& columns, double share, Diagnosis& 
 std::array<std::size_t, mask_count> count_masks(const PartitionedColumns& columns) {
   using Counts = std::array<std::size_t, mask_count>;
   Counts all{};
-  for (const Counts& part : columns.share.of_each_flight<Counts>([&columns](std::size_t f) {
+  for (const Counts& part : columns.partition.all_gather_flights<Counts>([&columns](std::size_t f) {
          Counts own{};
          if (columns.flights[f].reference != 0) return own;
          for (const Mask mask : columns.flights[f].mask) ++own[static_cast<std::size_t>(mask)];
@@ -195,7 +196,7 @@ std::array<std::size_t, mask_count> count_masks(const PartitionedColumns& column
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())
-    return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::silent;
+    return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::none_detected;
   const Unexplained& unexplained = diagnosis.unexplained;
   if (unexplained.significant && (left > notable * explained || !unexplained.steps.empty()))
     return Verdict::partial;
@@ -283,9 +284,9 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.flights =
       flights_of(analysis, base, changes(analysis, analysis.result().chosen, diagnosis.is_refitted));
   diagnosis.residual_rms = rms_of(
-      analysis.share(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].before; });
+      analysis.partition(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].before; });
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
-  diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
+  diagnosis.noise_rms_with_findings = noise_with_findings(analysis.partition(), diagnosis.flights);
   const double left = add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
   if (!flaps.candidates.empty())
     diagnose_flaps(analysis, references, flaps, groups_of(set, flaps.candidates), diagnosis);
@@ -357,7 +358,7 @@ void judge_held_out(Diagnosis& diagnosis) {
     const std::string text = part.text();
     Notes& notes = diagnosis.notes;
     if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
-    if (diagnosis.verdict == Verdict::silent) diagnosis.verdict = Verdict::unexplained;
+    if (diagnosis.verdict == Verdict::none_detected) diagnosis.verdict = Verdict::unexplained;
   }
 }
 

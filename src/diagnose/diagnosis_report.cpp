@@ -114,7 +114,7 @@ BarPanel ranking_bars(const Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     bars.bars.push_back({finding.id(), finding.chi2});
     for (const Alias& alias : finding.aliases)
-      bars.bars.push_back({"or " + alias.effect, finding.chi2 - alias.chi2_less});
+      bars.bars.push_back({"or " + alias.effect, finding.chi2 - alias.chi2_difference});
   }
   bars.bars.push_back({"threshold", diagnosis.threshold});
   return bars;
@@ -133,11 +133,12 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
     const Finding& finding = diagnosis.findings[i];
     table.rows.push_back({std::to_string(i + 1), finding.id(), estimates_text(finding.estimates),
                           finding.size_text(""), cell(finding.chi2, 1), "",
-                          ratio_cell(size_to_usual(finding.estimates)), finding.title});
+                          ratio_cell(relative_size_of(finding.estimates)), finding.title});
     for (const Alias& alias : finding.aliases) {
-      table.rows.push_back(
-          {"or", alias.effect, estimates_text(alias.estimates), "", cell(finding.chi2 - alias.chi2_less, 1),
-           fmt::format("{:+.3f}", alias.correlation), ratio_cell(alias.size_to_usual), alias.title});
+      table.rows.push_back({"or", alias.effect, estimates_text(alias.estimates), "",
+                            cell(finding.chi2 - alias.chi2_difference, 1),
+                            fmt::format("{:+.3f}", alias.correlation), ratio_cell(alias.relative_size),
+                            alias.title});
     }
   }
   return table;
@@ -217,7 +218,7 @@ std::string verdict_text(const Diagnosis& diagnosis) {
       return diagnosis.unexplained.significant
                  ? "The residual has structure that is not explained by any effect"
                  : "The held-out part has a bias that is not explained by any effect on the fitted flights";
-    case Verdict::silent:
+    case Verdict::none_detected:
       break;
   }
   const auto [detectable, all] = detectable_at_usual_size(diagnosis);
@@ -313,7 +314,7 @@ std::string kind_text(const Finding& finding) {
   if (is_unusually_large(finding))
     text += fmt::format(
         "; {} times its usual size, so look first for a wrong entry in the model, or for another cause",
-        ratio_text(finding.times_usual));
+        ratio_text(finding.relative_size));
   if (finding.of_reference) text += "; do not change the model for it";
   return text;
 }

@@ -29,7 +29,7 @@ Law law_of(const ModelEffect& effect) {
           info->manoeuvre, info->source};
 }
 
-std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
+std::string relative_size_text(double ratio) { return ratio_text(ratio) + " times the usual size"; }
 
 std::string what_it_is(const Finding& finding, const Law& law) {
   std::string text = "Missing effect: " + name_with_id(finding.title, finding.id()) + ".";
@@ -43,7 +43,8 @@ std::string what_it_is(const Finding& finding, const Law& law) {
 
 std::string how_large(const Finding& finding, const Law& law) {
   std::string text = fmt::format("The flights give {}", estimates_text(finding.estimates));
-  if (const double ratio = size_to_usual(finding.estimates); ratio > 0.0) text += ", " + times_usual(ratio);
+  if (const double ratio = relative_size_of(finding.estimates); ratio > 0.0)
+    text += ", " + relative_size_text(ratio);
   text += ".";
   if (!law.size.empty()) text += fmt::format(" Sizes met in practice: {}.", law.size);
   text += fmt::format(" The model does not absorb {} of the effect", finding.size_text());
@@ -77,11 +78,12 @@ std::string how_sure(const Finding& finding, double threshold) {
 }
 
 std::string rival(const Alias& alias) {
-  std::string text = fmt::format("{} ({}{}correlation {:+.3f}, chi2 {:.1f} {}", alias.effect, alias.title,
-                                 alias.title.empty() ? "" : "; ", alias.correlation,
-                                 std::abs(alias.chi2_less), alias.chi2_less < 0.0 ? "higher" : "lower");
-  if (alias.size_to_usual != 0.0 && std::isfinite(alias.size_to_usual))
-    text += ", " + times_usual(alias.size_to_usual);
+  std::string text =
+      fmt::format("{} ({}{}correlation {:+.3f}, chi2 {:.1f} {}", alias.effect, alias.title,
+                  alias.title.empty() ? "" : "; ", alias.correlation, std::abs(alias.chi2_difference),
+                  alias.chi2_difference < 0.0 ? "higher" : "lower");
+  if (alias.relative_size != 0.0 && std::isfinite(alias.relative_size))
+    text += ", " + relative_size_text(alias.relative_size);
   return text + ")";
 }
 
@@ -126,7 +128,7 @@ std::string percent(double share) {
   return fmt::format("{:.{}f} %", 100.0 * share, std::abs(share) < 0.0995 ? 1 : 0);
 }
 
-double size_to_usual(const std::vector<CoefficientEstimate>& estimates) {
+double relative_size_of(const std::vector<CoefficientEstimate>& estimates) {
   for (const CoefficientEstimate& e : estimates) {
     const double ratio = std::abs(e.value / e.typical);
     if (std::isfinite(ratio)) return ratio;

@@ -24,7 +24,7 @@ std::string percent(double share);
 
 /// Size of the first coefficient with a known usual size, in units of that size; 0 if there is no such
 /// coefficient.
-double size_to_usual(const std::vector<CoefficientEstimate>& estimates);
+double relative_size_of(const std::vector<CoefficientEstimate>& estimates);
 
 /// Size of a ratio, "0.03", "0.71", "2.1", "31"; empty for NaN.
 std::string ratio_text(double ratio);

@@ -97,7 +97,7 @@ std::vector<Evidence> events_of(const Analysis& analysis, const Eigen::VectorXd&
   const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
   std::vector<Evidence> events;
   for (const std::vector<Evidence>& more :
-       analysis.whole_share().of_each_flight<std::vector<Evidence>>([&](std::size_t f) {
+       analysis.whole_partition().all_gather_flights<std::vector<Evidence>>([&](std::size_t f) {
          std::vector<Evidence> of_flight;
          const FlightSamples& samples = *analysis.flight(f).samples;
          const std::vector<double>& time = analysis.bins(f).time();
@@ -159,7 +159,7 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
   const Eigen::VectorXd difference = fitted - analysis.coefficients(set_with(others, rival));
   const std::vector<Eigen::Index> own = indices_of(analysis.groups()[effect], analysis.base());
   using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
-  const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
+  const auto of_flights = analysis.whole_partition().all_gather_flights<Squares>([&](std::size_t f) {
     const auto columns = analysis.scores().rows[f].leftCols(difference.size());
     return Squares{(columns(Eigen::all, own) * fitted(own)).squaredNorm(),
                    (columns * difference).squaredNorm()};
@@ -223,16 +223,17 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.effect = candidates[g].id;
     alias.title = candidates[g].title;
     alias.correction = with_estimate(candidates[g], score.estimate);
-    alias.held = held_of(candidates[g], search.identifiable(g));
+    alias.fixed = held_of(candidates[g], search.identifiable(g));
     alias.is_alike = candidates[g].is_shared;
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
-    alias.chi2_less = (best.chi2 - score.chi2) * noisier - (best.freedom - score.freedom);
+    alias.chi2_difference =
+        (best.chi2 - score.chi2) * noisier - (best.degrees_of_freedom - score.degrees_of_freedom);
     alias.estimates =
         estimates_of(candidates[g], search.identifiable(g), score.estimate,
                      score.covariance * (search.variance(set_with(others, g)) / search.variance(others)));
     const CoefficientEstimate& first = alias.estimates.front();
-    if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
+    if (first.typical != 0.0) alias.relative_size = first.value / first.typical;
     aliases.push_back(std::move(alias));
   }
   return aliases;
@@ -257,7 +258,7 @@ struct Added {
 void measure(const Analysis& analysis, const References& references, std::size_t group,
              const Eigen::VectorXd& coefficients, const Eigen::VectorXd& own, const Candidate& candidate,
              Finding& finding) {
-  const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
+  const auto of_flights = analysis.whole_partition().all_gather_flights<Added>([&](std::size_t f) {
     Added of_flight;
     const std::vector<double> added = analysis.added_by(f, group, coefficients);
     for (const std::size_t record : analysis.bins(f).records()) {
@@ -344,7 +345,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   for (Alias& alias : finding.aliases) alias.probability = probability_of(alias.effect);
   for (const CoefficientEstimate& estimate : finding.estimates) {
     if (estimate.typical != 0.0)
-      finding.times_usual = std::max(finding.times_usual, std::abs(estimate.value / estimate.typical));
+      finding.relative_size = std::max(finding.relative_size, std::abs(estimate.value / estimate.typical));
   }
 }
 
@@ -352,8 +353,8 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
 /// candidates'
 double rms_of_column(const Analysis& analysis, const Candidate& candidate, Eigen::Index column,
                      double coefficient) {
-  return analysis.whole_share()
-      .sum_of_each_flight<SquareSum>([&](std::size_t f) {
+  return analysis.whole_partition()
+      .all_reduce_flights<SquareSum>([&](std::size_t f) {
         const FlightColumns& flight = analysis.flight(f);
         SquareSum sum;
         if (!candidate.is_measured_by(flight.reference)) return sum;
@@ -391,7 +392,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const References& ref
     const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
     finding.estimates =
         estimates_of(candidate, identifiable, own, covariance.block(position, position, count, count));
-    finding.held = held_of(candidate, identifiable);
+    finding.fixed = held_of(candidate, identifiable);
     measure(analysis, references, group, coefficients, own, candidate, finding);
     position += count;
     const std::vector<std::size_t> without = set_without(chosen, group);
@@ -402,8 +403,8 @@ std::vector<Finding> findings_of(const Analysis& analysis, const References& ref
     const HeldOut without_it = analysis.held_out(without);
     finding.rms_before = without_it.rms;
     finding.rms_after = with_all.rms;
-    finding.gain = (without_it.chi2 - with_all.chi2).sum();
-    finding.gain_error = (without_it.chi2 - with_all.chi2).norm();
+    finding.chi2_reduction = (without_it.chi2 - with_all.chi2).sum();
+    finding.chi2_reduction_error = (without_it.chi2 - with_all.chi2).norm();
     const Eigen::VectorXd& evidence = evidence_of_each[i];
     std::vector<Evidence> events = events_of(analysis, evidence);
     finding.events = count_of(events);
@@ -425,9 +426,10 @@ void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
   if (std::all_of(findings.begin(), findings.end(),
                   [](const Finding& finding) { return finding.aliases.empty(); }))
     return;
-  const std::vector<FlownRegime> regimes = flown_regimes(analysis.scores(), [&analysis](std::size_t f) {
-    return FlightInBins{analysis.flight(f), analysis.bins(f)};
-  });
+  const std::vector<RegimeStatistics> regimes =
+      regime_statistics(analysis.scores(), [&analysis](std::size_t f) {
+        return FlightInBins{analysis.flight(f), analysis.bins(f)};
+      });
   const Eigen::Index columns = analysis.scores().columns();
   const Eigen::MatrixXd now = analysis.scores().information.topLeftCorner(columns, columns);
   const double variance = analysis.search().variance(analysis.result().chosen);
@@ -517,7 +519,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     };
     if (std::any_of(findings.begin(), findings.end(), is_alias)) continue;
     const GroupScore score = search.score(g, chosen);
-    if (score.freedom == 0.0) continue;
+    if (score.degrees_of_freedom == 0.0) continue;
     UpperLimit limit{candidates[g].id, candidates[g].title,
                      estimates_of(candidates[g], search.identifiable(g), score.estimate, score.covariance)};
     const ColumnGroup& group = analysis.groups()[g];
@@ -557,7 +559,8 @@ void doubt_by_size(Diagnosis& diagnosis) {
     diagnosis.notes.push_back(warning_note(fmt::format(
         "look for a wrong entry or unit in the model or another cause first: {} is {} times its usual size; "
         "decrease of chi2 of held-out parts {:.0f} +- {:.0f}, not significant",
-        finding.id(), report::ratio_text(finding.times_usual), finding.gain, finding.gain_error)));
+        finding.id(), report::ratio_text(finding.relative_size), finding.chi2_reduction,
+        finding.chi2_reduction_error)));
   }
 }
 
@@ -590,12 +593,12 @@ void doubt_by_atmosphere(Diagnosis& diagnosis) {
         "decrease of chi2 of held-out parts {:.0f} +- {:.0f}",
         finding.id(),
         is_impossible
-            ? fmt::format("; its size is {} times the usual one", report::ratio_text(finding.times_usual))
+            ? fmt::format("; its size is {} times the usual one", report::ratio_text(finding.relative_size))
             : "",
         is_worse ? fmt::format("; the effect increases the held-out rms from {:.3f} to {:.3f} hPa",
                                finding.rms_before, finding.rms_after)
                  : "",
-        finding.gain, finding.gain_error)));
+        finding.chi2_reduction, finding.chi2_reduction_error)));
   }
 }
 

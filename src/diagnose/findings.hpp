@@ -37,11 +37,13 @@ inline constexpr double min_probability = 0.01;
 
 /// Whether a finding predicts held-out parts: their chi2 decreases by more than three standard errors.
 inline bool predicts_held_out_parts(const Finding& finding) {
-  return finding.gain > 3.0 * finding.gain_error;
+  return finding.chi2_reduction > 3.0 * finding.chi2_reduction_error;
 }
 
 /// Whether a finding is beyond two standard deviations of the widest prior of its size: 20 usual sizes.
-inline bool is_of_impossible_size(const Finding& finding) { return finding.times_usual > 2.0 * widest_prior; }
+inline bool is_of_impossible_size(const Finding& finding) {
+  return finding.relative_size > 2.0 * widest_prior;
+}
 
 /// An effect of an impossible size may be the image of another error, unless it predicts held-out parts: "an
 /// unknown error" becomes its rival, with a note.

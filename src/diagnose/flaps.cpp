@@ -59,7 +59,7 @@ PartitionedColumns flights_of(const Analysis& analysis, const FlapsCandidates& f
     }
     flight.candidates = flaps.columns[f];
   }
-  return {analysis.share(), std::move(flights)};
+  return {analysis.partition(), std::move(flights)};
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ PartitionedColumns flights_of(const Analysis& analysis, const FlapsCandidates& f
 FlapsCandidates find_flaps_candidates(const CandidateSet& set, const PartitionedColumns& columns) {
   FlapsCandidates flaps;
   const std::vector<FlightColumns>& flights = columns.flights;
-  const auto samples = columns.share.sum_of_each_flight<std::size_t>([&](std::size_t f) {
+  const auto samples = columns.partition.all_reduce_flights<std::size_t>([&](std::size_t f) {
     const auto is_out = [](double x) { return !std::isnan(x); };
     const auto out = std::count_if(flights[f].flaps_out.begin(), flights[f].flaps_out.end(), is_out);
     return flights[f].reference == 0 ? static_cast<std::size_t>(out) : 0U;
@@ -77,14 +77,14 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const Partitioned
     return reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
   };
   const std::vector<ColumnGroup> groups = groups_of(set, set.candidates);
-  const std::vector<std::string> troubles = troubles_of(columns, groups, [](const FlightColumns& flight) {
+  const std::vector<std::string> problems = problems_of(columns, groups, [](const FlightColumns& flight) {
     return flight.reference == 0 ? all_given(flight) : std::vector<double>();
   });
   std::vector<Eigen::Index> kept;
   for (std::size_t c = 0; c < groups.size(); ++c) {
     const Candidate& candidate = set.candidates[c];
     const bool reads_them = reads(candidate);
-    if (!troubles[c].empty() || !(reads_them || looks_like_flaps(candidate.effect))) continue;
+    if (!problems[c].empty() || !(reads_them || looks_like_flaps(candidate.effect))) continue;
     flaps.candidates.push_back(candidate);
     flaps.reads_flaps.push_back(reads_them);
     for (const Eigen::Index column : indices_of(groups[c], 0)) kept.push_back(column);
@@ -114,7 +114,7 @@ void diagnose_flaps(const Analysis& analysis, const References& references, cons
     Finding& finding = diagnosis.findings.emplace_back(findings[i]);
     if (!finding.aliases.empty()) finding.advice.sentence = general_advice(finding.id(), finding.effect);
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f) {
-      if (!test.share().is_local(f)) continue;
+      if (!test.partition().is_local(f)) continue;
       FlightDiagnosis& flight = diagnosis.flights[f];
       flight.added.push_back(test.added_by(f, chosen[i], coefficients));
       flight.evidence.push_back(evidence_along(test, f, evidence[i]));

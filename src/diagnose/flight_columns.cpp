@@ -47,7 +47,7 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
 
 /// Reason why a candidate cannot be tested on these columns; empty if it can.
 /// @param found result of each flight for each candidate
-std::string trouble_of(const std::vector<FlightColumns>& flights,
+std::string problem_of(const std::vector<FlightColumns>& flights,
                        const std::vector<std::vector<Testability>>& found, std::size_t candidate) {
   bool varies = false;
   for (std::size_t f = 0; f < flights.size(); ++f) {
@@ -95,16 +95,17 @@ References in_order_of_diagnosis(References references) {
 }
 
 PartitionedColumns columns_of_entries(
-    const FlightPartition& share, const std::function<SamplesOfFlight(std::size_t)>& read,
+    const FlightPartition& partition, const std::function<SamplesOfFlight(std::size_t)>& read,
     const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
-  std::vector<FlightColumns> own(share.flights());
-  PartitionedColumns columns{
-      share, share.map<FlightColumns>(share.threads(), read, [&](std::size_t entry, SamplesOfFlight samples) {
-        own[entry] = make(entry, std::move(samples));
-        return outline_of(own[entry]);
-      })};
+  std::vector<FlightColumns> own(partition.flights());
+  PartitionedColumns columns{partition,
+                             partition.map<FlightColumns>(partition.threads(), read,
+                                                          [&](std::size_t entry, SamplesOfFlight samples) {
+                                                            own[entry] = make(entry, std::move(samples));
+                                                            return outline_of(own[entry]);
+                                                          })};
   for (std::size_t entry = 0; entry < own.size(); ++entry) {
-    if (share.is_local(entry)) columns.flights[entry] = std::move(own[entry]);
+    if (partition.is_local(entry)) columns.flights[entry] = std::move(own[entry]);
   }
   return columns;
 }
@@ -119,7 +120,7 @@ PartitionedColumns columns_of_flights(const FlightSet& files, std::size_t count,
   const auto read = [&](std::size_t entry) {
     const std::size_t file = file_of_each[entry];
     const std::size_t r = entry / count;
-    if (r == 0 && options.progress) options.progress(++done, files.share().local_count());
+    if (r == 0 && options.progress) options.progress(++done, files.partition().local_count());
     SamplesOfFlight samples = files.samples(file, set.extended, *set.references[0], options.mask);
     if (r > 0) {
       auto further = std::make_shared<FlightSamples>(*samples);
@@ -136,14 +137,14 @@ PartitionedColumns columns_of_flights(const FlightSet& files, std::size_t count,
     found.file = file_of_each[entry];
     return found;
   };
-  PartitionedColumns columns = columns_of_entries(files.share().of_entries(file_of_each), read, make);
+  PartitionedColumns columns = columns_of_entries(files.partition().of_entries(file_of_each), read, make);
   for (const FlightColumns& flight : columns.flights)
     notes.insert(notes.end(), flight.samples->notes.begin(), flight.samples->notes.end());
   return columns;
 }
 
 void leave_out_empty(PartitionedColumns& columns) {
-  const auto is_left = columns.share.of_each_flight<int>([&](std::size_t number) {
+  const auto is_left = columns.partition.all_gather_flights<int>([&](std::size_t number) {
     const FlightColumns& flight = columns.flights[number];
     const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
     const bool is_long = flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(min_samples);
@@ -157,37 +158,37 @@ void leave_out_empty(PartitionedColumns& columns) {
     left.push_back(number);
     flights.push_back(std::move(columns.flights[number]));
   }
-  columns = {columns.share.of_entries(left), std::move(flights)};
+  columns = {columns.partition.of_entries(left), std::move(flights)};
 }
 
-std::vector<std::string> troubles_of(
+std::vector<std::string> problems_of(
     const PartitionedColumns& columns, const std::vector<ColumnGroup>& groups,
     const std::function<std::vector<double>(const FlightColumns& flight)>& given_of) {
-  const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
+  const auto found = columns.partition.all_gather_flights<std::vector<Testability>>([&](std::size_t f) {
     const FlightColumns& flight = columns.flights[f];
     const std::vector<double> given = given_of(flight);
     std::vector<Testability> of_each;
     for (const ColumnGroup& group : groups) of_each.push_back(testability_of(flight, given, group));
     return of_each;
   });
-  std::vector<std::string> troubles;
-  for (std::size_t c = 0; c < groups.size(); ++c) troubles.push_back(trouble_of(columns.flights, found, c));
-  return troubles;
+  std::vector<std::string> problems;
+  for (std::size_t c = 0; c < groups.size(); ++c) problems.push_back(problem_of(columns.flights, found, c));
+  return problems;
 }
 
 void drop_untestable(CandidateSet& set, PartitionedColumns& columns) {
   const std::vector<ColumnGroup> groups = groups_of(set, set.candidates);
-  std::vector<std::string> troubles =
-      troubles_of(columns, groups, [](const FlightColumns& flight) { return flight.given; });
+  std::vector<std::string> problems =
+      problems_of(columns, groups, [](const FlightColumns& flight) { return flight.given; });
   std::vector<Eigen::Index> kept;
   std::vector<Candidate> candidates;
   for (std::size_t c = 0; c < set.candidates.size(); ++c) {
     Candidate& candidate = set.candidates[c];
-    if (troubles[c].empty()) {
+    if (problems[c].empty()) {
       for (const Eigen::Index column : indices_of(groups[c], 0)) kept.push_back(column);
       candidates.push_back(std::move(candidate));
     } else if (!candidate.is_variant) {
-      set.not_testable.push_back({candidate.id, candidate.title, std::move(troubles[c])});
+      set.not_testable.push_back({candidate.id, candidate.title, std::move(problems[c])});
     }
   }
   set.candidates = std::move(candidates);
@@ -198,7 +199,7 @@ void hold_imitated_coefficients(CandidateSet& set, PartitionedColumns& columns, 
   constexpr double notable = 0.03;  // hPa, rms
   const Eigen::Index count = as_index(set.base.size());
   // Products of all columns with each other; the last entry is the number of rows.
-  const auto sums = columns.share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+  const auto sums = columns.partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t f) {
     const std::vector<std::size_t> used = used_samples(columns.flights[f].mask);
     const Eigen::MatrixXd base = columns.flights[f].base(used, Eigen::all).cast<double>();
     Eigen::MatrixXd own(count, count + 1);

@@ -30,16 +30,16 @@ References in_order_of_diagnosis(References references);
 /// Flights against each of their references, the first reference first. A rank has the columns of its local
 /// flights, and the shared outlines of the others (`outline_of`).
 struct PartitionedColumns {
-  FlightPartition share;
+  FlightPartition partition;
   std::vector<FlightColumns> flights{};
 };
 
 using SamplesOfFlight = std::shared_ptr<const FlightSamples>;
 
-/// Columns of entries of a share, computed in threads.
+/// Columns of entries of a partition, computed in threads.
 /// @param read gives the samples of a local entry @param make gives its columns
 PartitionedColumns columns_of_entries(
-    const FlightPartition& share, const std::function<SamplesOfFlight(std::size_t entry)>& read,
+    const FlightPartition& partition, const std::function<SamplesOfFlight(std::size_t entry)>& read,
     const std::function<FlightColumns(std::size_t entry, SamplesOfFlight)>& make);
 
 /// Columns of the first `count` flights against each reference of the set.
@@ -52,7 +52,7 @@ void leave_out_empty(PartitionedColumns& columns);
 
 /// Reason for each group why its candidate cannot be tested on these columns; empty if it can.
 /// @param given_of gives a series of a local flight that has a value if a sample is used
-std::vector<std::string> troubles_of(
+std::vector<std::string> problems_of(
     const PartitionedColumns& columns, const std::vector<ColumnGroup>& groups,
     const std::function<std::vector<double>(const FlightColumns& flight)>& given_of);
 

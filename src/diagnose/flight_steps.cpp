@@ -59,8 +59,8 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   const Eigen::VectorXd left = right - (half * together).transpose() * by_model;
   const Eigen::VectorXd solution =
       left + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * left));
-  const double freedom = std::max(1.0, rows - static_cast<double>(model + flights));
-  const double variance = (squares - by_model.squaredNorm() - left.dot(solution)) / freedom;
+  const double degrees_of_freedom = std::max(1.0, rows - static_cast<double>(model + flights));
+  const double variance = (squares - by_model.squaredNorm() - left.dot(solution)) / degrees_of_freedom;
   const Eigen::VectorXd diagonal = 1.0 + (rows_of_model.cwiseAbs2().transpose() * beyond).array();
   const Eigen::VectorXd with_sum =
       unit + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * unit));
@@ -70,9 +70,9 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
 
 /// Square of a normal variable with the same tail probability as a Student variable with these degrees of
 /// freedom (Wallace 1959, Annals of Mathematical Statistics 30, 1121).
-double normal_square(double student_square, double freedom) {
-  const double scale = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
-  return scale * scale * freedom * std::log1p(student_square / freedom);
+double normal_square(double student_square, double degrees_of_freedom) {
+  const double scale = (8.0 * degrees_of_freedom + 1.0) / (8.0 * degrees_of_freedom + 3.0);
+  return scale * scale * degrees_of_freedom * std::log1p(student_square / degrees_of_freedom);
 }
 
 /// The step of one flight against the others.
@@ -105,13 +105,13 @@ FlightOffset step_of(Eigen::Index one, const Means& all) {
 
 }  // namespace
 
-std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const BinnedFlights& binned,
+std::vector<FlightOffset> find_mean_offsets(const FlightPartition& partition, const BinnedFlights& binned,
                                             const NoiseModel& noise) {
   const std::vector<Binning>& bins = binned.bins;
   std::vector<FlightOffset> steps(bins.size());
-  const auto rows = share.sum_of_each_flight<std::size_t>([&](std::size_t f) { return bins[f].size(); });
+  const auto rows = partition.all_reduce_flights<std::size_t>([&](std::size_t f) { return bins[f].size(); });
   // Products of whitened columns, a constant and the residual; empty for a flight without bins.
-  auto found = share.of_each_flight<Eigen::MatrixXd>([&](std::size_t f) -> Eigen::MatrixXd {
+  auto found = partition.all_gather_flights<Eigen::MatrixXd>([&](std::size_t f) -> Eigen::MatrixXd {
     if (bins[f].size() == 0) return {};
     // A model without a column is one with a column of zeros.
     const Eigen::Index model = std::max<Eigen::Index>(binned.columns[f].cols(), 1);

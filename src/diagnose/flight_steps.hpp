@@ -16,7 +16,7 @@ namespace pcor::internal {
 /// @param binned with the columns of the model; @param noise of each local flight
 /// @return one step per flight, without its name; p value 1 if there is no other flight. If there are two
 /// flights, only the second has a step, because both differ by the same amount.
-std::vector<FlightOffset> find_mean_offsets(const FlightPartition& share, const BinnedFlights& binned,
+std::vector<FlightOffset> find_mean_offsets(const FlightPartition& partition, const BinnedFlights& binned,
                                             const NoiseModel& noise);
 
 }  // namespace pcor::internal

@@ -41,9 +41,9 @@ inline SquareSum square_sum_of(const std::vector<double>& values) {
 
 /// Root mean square of one series over all flights. @param series_of gives the values of a local flight
 template <class Series>
-double rms_of(const FlightPartition& share, const Series& series_of) {
-  return share
-      .sum_of_each_flight<SquareSum>([&](std::size_t flight) { return square_sum_of(series_of(flight)); })
+double rms_of(const FlightPartition& partition, const Series& series_of) {
+  return partition
+      .all_reduce_flights<SquareSum>([&](std::size_t flight) { return square_sum_of(series_of(flight)); })
       .rms();
 }
 

@@ -9,7 +9,7 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include "base/phrasing.hpp"
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -110,13 +110,13 @@ std::string intervals_text(Regime regime, int count) {
 
 }  // namespace
 
-std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
-                                       const std::function<FlightInBins(std::size_t flight)>& flight) {
-  std::vector<FlownRegime> regimes;
+std::vector<RegimeStatistics> regime_statistics(
+    const WhitenedSystem& scores, const std::function<FlightInBins(std::size_t flight)>& flight) {
+  std::vector<RegimeStatistics> regimes;
   for (std::size_t r = 0; r < regime_count; ++r) {
     const auto regime = static_cast<Regime>(r);
     if (!can_be_repeated(regime)) continue;
-    auto sum = scores.share.sum_of_each_flight<RegimeSum>(
+    auto sum = scores.partition.all_reduce_flights<RegimeSum>(
         [&](std::size_t f) { return sum_of(regime, scores, f, flight(f)); });
     if (sum.intervals == 0.0) continue;
     regimes.push_back(
@@ -125,10 +125,10 @@ std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
   return regimes;
 }
 
-Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem& rivalry) {
+Plan best_plan(const std::vector<RegimeStatistics>& regimes, const SeparationProblem& rivalry) {
   const double now = min_distinct(rivalry, rivalry.information);
   Plan best;
-  for (const FlownRegime& regime : regimes) {
+  for (const RegimeStatistics& regime : regimes) {
     Plan plan{&regime};
     while (plan.repeats < max_repeats && plan.power < enough_power) {
       ++plan.repeats;

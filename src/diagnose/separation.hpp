@@ -14,7 +14,7 @@
 namespace pcor::internal {
 
 /// A regime that some flights flew: the mean of its intervals.
-struct FlownRegime {
+struct RegimeStatistics {
   Regime regime = Regime::count;
   double duration = 0.0;          ///< s
   Eigen::MatrixXd information{};  ///< products of the whitened columns with each other
@@ -31,8 +31,8 @@ struct FlightInBins {
 /// climb or a descent over which another regime lies, such as a turn, count for that regime alone.
 ///
 /// @param flight gives the flight of an entry of the scores
-std::vector<FlownRegime> flown_regimes(const WhitenedSystem& scores,
-                                       const std::function<FlightInBins(std::size_t flight)>& flight);
+std::vector<RegimeStatistics> regime_statistics(
+    const WhitenedSystem& scores, const std::function<FlightInBins(std::size_t flight)>& flight);
 
 /// An effect of an estimated size, and its rivals.
 struct SeparationProblem {
@@ -46,7 +46,7 @@ struct SeparationProblem {
 
 /// Regime to repeat, and the number of repeats.
 struct Plan {
-  const FlownRegime* regime = nullptr;
+  const RegimeStatistics* regime = nullptr;
   int repeats = 0;
   double power = 0.0;  ///< probability that it separates the effect from all rivals with 95 % confidence
   double gain = 0.0;   ///< increase of D (see `best_plan`) per second of flight
@@ -61,7 +61,7 @@ struct Plan {
 /// A rival is separated if chi2 rises by more than 9 when it replaces the effect. The difference is normal
 /// with mean D and variance 4 D, where D is the part of the effect that the rival cannot imitate. Repeated
 /// intervals are assumed to equal the mean interval of their regime.
-Plan best_plan(const std::vector<FlownRegime>& regimes, const SeparationProblem& rivalry);
+Plan best_plan(const std::vector<RegimeStatistics>& regimes, const SeparationProblem& rivalry);
 
 /// Regime, flight time and probability of separating the effect from its rivals; general advice for a plan
 /// without a regime. @param id of the effect, as in a finding

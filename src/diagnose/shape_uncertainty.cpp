@@ -60,7 +60,7 @@ bool has_uncertain_shape(const ModelEffect& effect) {
                       [](Quantity input) { return input == Quantity::time || input == Quantity::date; });
 }
 
-std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
+std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& partition,
                                                const std::vector<const FlightColumns*>& flights,
                                                const BinnedFlights& binned,
                                                const std::vector<Eigen::VectorXd>& effects) {
@@ -74,7 +74,7 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
       return binned.columns[f] * effects[static_cast<std::size_t>(e)];
     };
     // Sum of the squares against each reference, and their number.
-    const auto squares = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+    const auto squares = partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t f) {
       Eigen::MatrixXd of_references = Eigen::MatrixXd::Zero(2, as_index(references));
       of_references.col(as_index(flights[f]->reference)) << effect_on(f).squaredNorm(),
           static_cast<double>(binned.columns[f].rows());
@@ -83,13 +83,13 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
     const double sum = squares.row(0).sum();
     if (!(sum > 0.0)) continue;
     const double rms = std::sqrt(sum / squares.row(1).sum());
-    const auto sums = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
+    const auto sums = partition.all_reduce_flights<Eigen::VectorXd>([&](std::size_t f) -> Eigen::VectorXd {
       const Eigen::VectorXd effect = effect_on(f);
       return factors_of(*flights[f], binned.bins[f], effect, rms).transpose() * effect.cwiseAbs2();
     });
     const Eigen::RowVectorXd mean = sums.transpose() / sum;
     for (std::size_t f = 0; f < flights.size(); ++f) {
-      if (!share.is_local(f)) continue;
+      if (!partition.is_local(f)) continue;
       const Eigen::VectorXd effect = effect_on(f);
       const Eigen::MatrixXd varying = factors_of(*flights[f], binned.bins[f], effect, rms).rowwise() - mean;
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);

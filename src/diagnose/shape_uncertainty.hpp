@@ -30,7 +30,7 @@ inline constexpr Eigen::Index shape_columns = 6;
 /// @param flights in the order of their references
 /// @param effects coefficients of all columns of the flights; each vector holds those of one effect, and
 /// zeros
-std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& share,
+std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& partition,
                                                const std::vector<const FlightColumns*>& flights,
                                                const BinnedFlights& binned,
                                                const std::vector<Eigen::VectorXd>& effects);

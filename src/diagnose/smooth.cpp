@@ -22,9 +22,9 @@ double spline_at(double x) {
 
 }  // namespace
 
-VariableValues::VariableValues(const FlightPartition& share,
+VariableValues::VariableValues(const FlightPartition& partition,
                                const std::function<std::vector<double>(std::size_t)>& values_of) {
-  for (const std::vector<double>& of_flight : share.of_each_flight<std::vector<double>>(values_of)) {
+  for (const std::vector<double>& of_flight : partition.all_gather_flights<std::vector<double>>(values_of)) {
     std::copy_if(of_flight.begin(), of_flight.end(), std::back_inserter(values),
                  [](double value) { return std::isfinite(value); });
     missing += of_flight.size();

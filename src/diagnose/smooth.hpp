@@ -12,7 +12,7 @@ namespace pcor::internal {
 /// Results do not depend on the distribution of flights.
 struct VariableValues {
   /// @param values_of values of a local flight; values that are not finite are missing
-  VariableValues(const FlightPartition& share,
+  VariableValues(const FlightPartition& partition,
                  const std::function<std::vector<double>(std::size_t flight)>& values_of);
 
   /// Distinct values, ascending; if there are more than `max_count`, an incomplete list of more than

@@ -54,7 +54,7 @@ DrawnResiduals drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint
 }
 
 /// Probability that a value is reached by chance, from random draws.
-double chance_among(double value, const Eigen::VectorXd& others) {
+double p_value_among(double value, const Eigen::VectorXd& others) {
   constexpr double euler = 0.57721566490153286;
   const auto count = static_cast<double>(others.size());
   const double mean = others.mean();
@@ -85,20 +85,20 @@ Eigen::MatrixXd DrawnResiduals::products_with(const Eigen::MatrixXd& columns) co
   return side_by_side(columns.transpose() * shifted, by_minutes.transpose() * signs);
 }
 
-StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& binned,
+StructureTest::StructureTest(const FlightPartition& partition, const BinnedFlights& binned,
                              const NoiseModel& noise, std::uint64_t seed,
                              const std::vector<Eigen::MatrixXd>& aside)
-    : share_(share), bins_(binned.bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
+    : partition_(partition), bins_(binned.bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
   const std::vector<Eigen::VectorXd>& residuals = binned.residuals;
   std::vector<Eigen::MatrixXd> with_aside = binned.columns;
   for (std::size_t f = 0; f < aside.size(); ++f) with_aside[f] = side_by_side(binned.columns[f], aside[f]);
   for (const double part : parts_of_drift) {
-    if (part < 1.0 && !noise.drifts()) break;
+    if (part < 1.0 && !noise.has_drift()) break;
     Whitened& flights = whitened_.emplace_back();
     NoiseModel left = noise;
-    for (double& slow : left.slow) slow *= part;
-    const WhitenedSystem scores = find_scores(share, bins_, binned.columns, residuals, left);
+    for (double& slow : left.drift_component_rms) slow *= part;
+    const WhitenedSystem scores = whiten_system(partition, bins_, binned.columns, residuals, left);
     rows_ = scores.row_count;
     const Eigen::Index width = scores.columns();
     flights.inverse = information_inverse(scores.information.topLeftCorner(width, width));
@@ -107,30 +107,30 @@ StructureTest::StructureTest(const FlightPartition& share, const BinnedFlights& 
     for (std::size_t f = 0; f < bins_.size(); ++f) {
       flights.whitening.emplace_back(bins_[f], left, f);
       flights.model.emplace_back();
-      if (share.is_local(f)) flights.model[f] = scores.rows[f].leftCols(width);
+      if (partition.is_local(f)) flights.model[f] = scores.rows[f].leftCols(width);
     }
-    flights.determinant = share.sum_of_each_flight<double>(
+    flights.determinant = partition.all_reduce_flights<double>(
         [&flights](std::size_t f) { return flights.whitening[f].log_determinant(); });
     const std::vector<Eigen::VectorXd> noise_alone =
-        aside.empty() ? flights.left : left_of(find_scores(share, bins_, with_aside, residuals, left));
+        aside.empty() ? flights.left : left_of(whiten_system(partition, bins_, with_aside, residuals, left));
     flights.drawn.resize(bins_.size());
-    flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>(
+    flights.model_with_drawn = partition.all_reduce_flights<Eigen::MatrixXd>(
         [&](std::size_t f) {
           flights.drawn[f] = drawn(noise_alone[f], bins_[f], seed + f, seed);
           return flights.drawn[f].products_with(flights.model[f]);
         },
-        share.threads());
+        partition.threads());
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
 }
 
-double StructureTest::minus_likelihood(const Whitened& flights, double taken) const {
-  const double left = std::max(flights.squares - taken, 1e-9 * flights.squares);
+double StructureTest::minus_likelihood(const Whitened& flights, double explained) const {
+  const double left = std::max(flights.squares - explained, 1e-9 * flights.squares);
   return flights.determinant + static_cast<double>(rows_) * std::log(left);
 }
 
 bool StructureTest::add(const TestedVariable& variable) {
-  const VariableValues known(share_, [&](std::size_t f) {
+  const VariableValues known(partition_, [&](std::size_t f) {
     std::vector<double> of_flight;
     for (const std::size_t record : bins_[f].records()) of_flight.push_back((*variable.values[f])[record]);
     return of_flight;
@@ -186,7 +186,8 @@ Eigen::MatrixXd StructureTest::products(std::size_t flight, const Eigen::MatrixX
   return all;
 }
 
-StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, const Whitened& flights) {
+StructureTest::ExplainedSquares StructureTest::explained_by(const Eigen::MatrixXd& products,
+                                                            const Whitened& flights) {
   const Eigen::Index count = products.rows();
   const Eigen::Index model = flights.inverse.rows();
   Eigen::MatrixXd own = products.leftCols(count);
@@ -198,31 +199,31 @@ StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, co
   own -= with_model.transpose() * solution;
   drawn -= solution.transpose() * flights.model_with_drawn;
 
-  Taken taken;
+  ExplainedSquares explained;
   if (own(0, 0) > min_direction_left * before[0]) {
-    taken.line_score = score[0];
-    taken.line_information = own(0, 0);
-    taken.line = score[0] * score[0] / own(0, 0);
+    explained.line_score = score[0];
+    explained.line_information = own(0, 0);
+    explained.line = score[0] * score[0] / own(0, 0);
   }
   const Eigen::VectorXd scale = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const SymmetricEigen solver(scale.asDiagonal() * own * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     if (!(solver.eigenvalues()[k] > min_direction_left)) continue;
-    turn.col(taken.freedom++) =
+    turn.col(explained.degrees_of_freedom++) =
         scale.asDiagonal() * solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
   }
-  const Eigen::MatrixXd normal = turn.leftCols(taken.freedom).transpose();
-  taken.all = (normal * score).squaredNorm();
-  taken.drawn = (normal * drawn).colwise().squaredNorm();
-  return taken;
+  const Eigen::MatrixXd normal = turn.leftCols(explained.degrees_of_freedom).transpose();
+  explained.all = (normal * score).squaredNorm();
+  explained.drawn = (normal * drawn).colwise().squaredNorm();
+  return explained;
 }
 
 void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
   if (smooth.columns() == 0) return;
   const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, variable);
-  const auto sums = share_.sum_of_each_flight<Eigen::MatrixXd>(
-      [&](std::size_t f) { return products(f, columns[f]); }, share_.threads());
+  const auto sums = partition_.all_reduce_flights<Eigen::MatrixXd>(
+      [&](std::size_t f) { return products(f, columns[f]); }, partition_.threads());
   const Eigen::Index width = sums.cols() / as_index(whitened_.size());
   Structure structure;
   structure.variable = &variable;
@@ -236,40 +237,42 @@ void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
   Eigen::VectorXd with_drawn = Eigen::VectorXd::Constant(2 * draws, with_all);
   for (std::size_t k = 0; k < whitened_.size(); ++k) {
     const Whitened& flights = whitened_[k];
-    const Taken taken = taken_by(sums.middleCols(width * as_index(k), width), flights);
-    if (taken.freedom == 0) return;
-    const double freedom =
+    const ExplainedSquares explained = explained_by(sums.middleCols(width * as_index(k), width), flights);
+    if (explained.degrees_of_freedom == 0) return;
+    const double degrees_of_freedom =
         std::max(1.0, static_cast<double>(rows_) - static_cast<double>(flights.inverse.rows()));
-    const double variance = flights.squares / freedom;
-    structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
-    if (const double value = minus_likelihood(flights, taken.all); value < with_all) {
+    const double variance = flights.squares / degrees_of_freedom;
+    structure.degrees_of_freedom =
+        std::max(structure.degrees_of_freedom, static_cast<double>(explained.degrees_of_freedom));
+    if (const double value = minus_likelihood(flights, explained.all); value < with_all) {
       with_all = value;
       structure.r2 =
-          std::max(0.0, taken.all / flights.squares - static_cast<double>(taken.freedom) / freedom);
+          std::max(0.0, explained.all / flights.squares -
+                            static_cast<double>(explained.degrees_of_freedom) / degrees_of_freedom);
     }
-    if (const double value = minus_likelihood(flights, taken.line);
-        smooth.has_line() && taken.line > 0.0 && value < with_line) {
+    if (const double value = minus_likelihood(flights, explained.line);
+        smooth.has_line() && explained.line > 0.0 && value < with_line) {
       with_line = value;
-      structure.linear_r2 = std::max(0.0, taken.line / flights.squares - 1.0 / freedom);
-      structure.slope = taken.line_score / taken.line_information / smooth.deviation();
-      structure.slope_error = std::sqrt(variance / taken.line_information) / smooth.deviation();
+      structure.linear_r2 = std::max(0.0, explained.line / flights.squares - 1.0 / degrees_of_freedom);
+      structure.slope = explained.line_score / explained.line_information / smooth.deviation();
+      structure.slope_error = std::sqrt(variance / explained.line_information) / smooth.deviation();
     }
     for (Eigen::Index draw = 0; draw < 2 * draws; ++draw)
-      with_drawn[draw] = std::min(with_drawn[draw], minus_likelihood(flights, taken.drawn[draw]));
+      with_drawn[draw] = std::min(with_drawn[draw], minus_likelihood(flights, explained.drawn[draw]));
   }
   structure.gain = alone_ - with_all;
   structure.line_gain = std::isfinite(with_line) ? alone_ - with_line : 0.0;
   const Eigen::VectorXd by_chance = alone_ - with_drawn.array();
   const double mean = std::max(by_chance.head(draws).mean(), by_chance.tail(draws).mean());
-  const double unit = std::max(1.0, mean / structure.freedom);
-  structure.equivalent = chi2_one_dof(structure.gain / unit, structure.freedom);
+  const double unit = std::max(1.0, mean / structure.degrees_of_freedom);
+  structure.chi2_one_dof = chi2_one_dof(structure.gain / unit, structure.degrees_of_freedom);
   for (Eigen::Index k = 0; k < 2 * draws; ++k) {
     // The one-degree equivalent never exceeds the value itself.
     if (by_chance[k] / unit <= largest_[k]) continue;
-    largest_[k] = std::max(largest_[k], chi2_one_dof(by_chance[k] / unit, structure.freedom));
+    largest_[k] = std::max(largest_[k], chi2_one_dof(by_chance[k] / unit, structure.degrees_of_freedom));
   }
   const double strong_freedom = strong_.empty() ? 0.0 : static_cast<double>(strong_.front().cols());
-  if (structure.gain - structure.freedom > strong_gain_ - strong_freedom) {
+  if (structure.gain - structure.degrees_of_freedom > strong_gain_ - strong_freedom) {
     strong_gain_ = structure.gain;
     strong_ = columns;
   }
@@ -277,10 +280,10 @@ void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
 }
 
 double StructureTest::p_value() const {
-  const auto strongest =
-      std::max_element(structures_.begin(), structures_.end(),
-                       [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
-  return strongest == structures_.end() ? 1.0 : chance_of(strongest->equivalent);
+  const auto strongest = std::max_element(
+      structures_.begin(), structures_.end(),
+      [](const Structure& a, const Structure& b) { return a.chi2_one_dof < b.chi2_one_dof; });
+  return strongest == structures_.end() ? 1.0 : p_value_of(strongest->chi2_one_dof);
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::strong_structure() const {
@@ -290,9 +293,9 @@ std::vector<Eigen::MatrixXd> StructureTest::strong_structure() const {
   return each * static_cast<double>(structures_.size()) < rare ? strong_ : std::vector<Eigen::MatrixXd>();
 }
 
-double StructureTest::chance_of(double equivalent) const {
-  return std::max(chance_among(equivalent, largest_.head(draws)),
-                  chance_among(equivalent, largest_.tail(draws)));
+double StructureTest::p_value_of(double chi2_one_dof) const {
+  return std::max(p_value_among(chi2_one_dof, largest_.head(draws)),
+                  p_value_among(chi2_one_dof, largest_.tail(draws)));
 }
 
 bool ChangeSlope::is_correlated() const {
@@ -310,12 +313,13 @@ bool ChangeSlope::agrees_with(const Structure& structure) const {
   return std::abs(slope - structure.slope) < allowed;
 }
 
-ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
+ChangeSlope slope_of_changes(const FlightPartition& partition,
+                             const std::vector<std::vector<double>>& residuals,
                              const TestedVariable& variable) {
   constexpr std::size_t window = 300;
   constexpr std::size_t fewest = 60;
   using Parts = std::vector<std::array<double, 2>>;  // correlation and slope of each part
-  const auto of_flights = share.of_each_flight<Parts>([&](std::size_t f) {
+  const auto of_flights = partition.all_gather_flights<Parts>([&](std::size_t f) {
     Parts parts;
     const std::vector<double>& residual = residuals[f];
     const std::vector<double>& values = *variable.values[f];

@@ -18,10 +18,10 @@ namespace pcor::internal {
 /// description.
 struct Structure : EmpiricalPredictor {
   const TestedVariable* variable = nullptr;
-  double gain = 0.0;        ///< twice the gain in log-likelihood over drift alone, with the most likely drift
-  double freedom = 0.0;     ///< number of functions
-  double equivalent = 0.0;  ///< gain as chi2 of one degree of freedom, in units of the gain by chance
-  double line_gain = 0.0;   ///< `gain` of the straight line alone
+  double gain = 0.0;  ///< twice the gain in log-likelihood over drift alone, with the most likely drift
+  double degrees_of_freedom = 0.0;  ///< number of functions
+  double chi2_one_dof = 0.0;        ///< gain as chi2 of one degree of freedom, in units of the gain by chance
+  double line_gain = 0.0;           ///< `gain` of the straight line alone
 };
 
 /// Residuals of a flight without dependence on any variable: first shifted in time, then with random signs
@@ -48,11 +48,11 @@ struct DrawnResiduals {
 /// sign-changed residuals, so it may be removed before the chance level is estimated.
 class StructureTest {
  public:
-  /// @param share of the flights: a rank has the bins and all other data of its local flights
+  /// @param partition of the flights: a rank has the bins and all other data of its local flights
   /// @param binned columns of the model, base and chosen effects, and residuals
   /// @param noise with all drift remaining after the model; @param seed of shifts and signs
   /// @param aside columns to subtract from the residuals that give the chance level; may be empty
-  StructureTest(const FlightPartition& share, const BinnedFlights& binned, const NoiseModel& noise,
+  StructureTest(const FlightPartition& partition, const BinnedFlights& binned, const NoiseModel& noise,
                 std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
 
   /// Tries functions of a variable; if it is `fine`, also functions that bend many times over its range.
@@ -63,13 +63,13 @@ class StructureTest {
 
   const std::vector<Structure>& structures() const { return structures_; }
 
-  /// `chance_of` the largest equivalent; 1 without a structure.
+  /// `p_value_of` the largest chi2 of one degree of freedom; 1 without a structure.
   double p_value() const;
 
   /// Probability that the best of all variables does as well on residuals that are shifted in time or have
   /// random signs, the larger of the two: extreme-value law (Gumbel 1958, Statistics of extremes) fitted to
   /// the draws.
-  double chance_of(double equivalent) const;
+  double p_value_of(double chi2_one_dof) const;
 
   /// Columns of each flight, in bins, of the variable with the largest gain beyond its number of functions,
   /// for removal; empty if noise of the noise model would reach this gain with a probability above 1e-4.
@@ -88,13 +88,13 @@ class StructureTest {
     double determinant = 0.0;   // log determinant of the covariance of the noise
   };
   /// Decrease of the squares by a variable: residuals, and drawn residuals.
-  struct Taken {
+  struct ExplainedSquares {
     double line = 0.0;
     double line_information = 0.0;
     double line_score = 0.0;
     double all = 0.0;
     Eigen::VectorXd drawn{};
-    Eigen::Index freedom = 0;
+    Eigen::Index degrees_of_freedom = 0;
   };
 
   void add(const TestedVariable& variable, const Smooth& smooth);
@@ -103,10 +103,10 @@ class StructureTest {
   /// the draws, in adjacent columns for each part of the drift.
   Eigen::MatrixXd products(std::size_t flight, const Eigen::MatrixXd& columns) const;
   /// @param products summed over all flights for one part of the drift
-  static Taken taken_by(const Eigen::MatrixXd& products, const Whitened& flights);
-  double minus_likelihood(const Whitened& flights, double taken) const;
+  static ExplainedSquares explained_by(const Eigen::MatrixXd& products, const Whitened& flights);
+  double minus_likelihood(const Whitened& flights, double explained) const;
 
-  FlightPartition share_;
+  FlightPartition partition_;
   std::vector<Binning> bins_;
   std::size_t rows_ = 0;              // all flights
   std::vector<Whitened> whitened_{};  // one per remaining part of the drift, full drift first
@@ -136,7 +136,8 @@ struct ChangeSlope {
 };
 
 /// @param residuals of local flights; missing values are ignored
-ChangeSlope slope_of_changes(const FlightPartition& share, const std::vector<std::vector<double>>& residuals,
+ChangeSlope slope_of_changes(const FlightPartition& partition,
+                             const std::vector<std::vector<double>>& residuals,
                              const TestedVariable& variable);
 
 }  // namespace pcor::internal

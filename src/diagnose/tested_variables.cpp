@@ -169,7 +169,7 @@ std::set<std::string> computed_from(const Flight& flight, const std::set<std::st
   return computed;
 }
 
-std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& flights) {
+std::vector<TestedVariable> quantity_variables(const std::vector<FlightColumns>& flights) {
   std::vector<TestedVariable> result;
   for (const auto& [quantity, column] : flights.front().quantities) {
     TestedVariable& variable = result.emplace_back();
@@ -197,12 +197,12 @@ std::vector<TestedVariable> recorded_variables(const FlightSet& files,
                                                const std::vector<FlightColumns>& flights,
                                                const std::set<std::string>& without) {
   const std::vector<TestedVariable> of_first =
-      files.share()
-          .of_each_flight<std::vector<TestedVariable>>([&](std::size_t number) {
+      files.partition()
+          .all_gather_flights<std::vector<TestedVariable>>([&](std::size_t number) {
             return number == 0 ? described_by(files[0], without) : std::vector<TestedVariable>();
           })
           .front();
-  const auto has = files.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
+  const auto has = files.partition().all_gather_flights<std::vector<bool>>([&](std::size_t number) {
     const Flight& file = files[number];
     std::vector<bool> all;
     for (const TestedVariable& each : of_first)
@@ -215,7 +215,7 @@ std::vector<TestedVariable> recorded_variables(const FlightSet& files,
       result.push_back(of_first[k]);
   }
   std::vector<std::vector<Values>> values(result.size(), std::vector<Values>(files.size()));
-  const auto seen = files.share().of_each_flight<std::vector<Seen>>([&](std::size_t number) {
+  const auto seen = files.partition().all_gather_flights<std::vector<Seen>>([&](std::size_t number) {
     const Flight& file = files[number];
     std::vector<Seen> of_file(result.size());
     for (std::size_t k = 0; k < result.size(); ++k)

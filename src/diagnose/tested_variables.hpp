@@ -34,7 +34,7 @@ struct TestedVariable {
 };
 
 /// Motion of the aircraft, and products of motion variables.
-std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& flights);
+std::vector<TestedVariable> quantity_variables(const std::vector<FlightColumns>& flights);
 
 /// Time-series variables present in all files, without the truth of a simulation.
 ///

@@ -30,8 +30,8 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double chance = 0.01;  // probability that the best of all variables matches noise alone
-constexpr double sure = 3.0;     // log odds, a probability of 95 %
+constexpr double max_p_value = 0.01;  // probability that the best of all variables matches noise alone
+constexpr double sure = 3.0;          // log odds, a probability of 95 %
 constexpr std::size_t max_variables = 10;
 /// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
 /// without drift, since no autoregression describes it wholly.
@@ -80,7 +80,7 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
   constexpr double fewest = 120.0;
   // Squares and their number for each regime.
   using Sums = Eigen::Matrix<double, static_cast<int>(regime_count), 2>;
-  const auto sums = analysis.share().sum_of_each_flight<Sums>([&](std::size_t f) {
+  const auto sums = analysis.partition().all_reduce_flights<Sums>([&](std::size_t f) {
     Sums own = Sums::Zero();
     const FlightSamples& samples = *analysis.flights()[f].samples;
     const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
@@ -112,7 +112,8 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   const Eigen::VectorXd coefficients = analysis.coefficients(groups);
   std::vector<std::vector<double>> after;
   for (std::size_t f = 0; f < analysis.flights().size(); ++f)
-    after.push_back(only_at(residual_after(analysis.flights()[f], coefficients), analysis.bins(f).records()));
+    after.push_back(
+        select_samples(residual_after(analysis.flights()[f], coefficients), analysis.bins(f).records()));
   return after;
 }
 
@@ -120,7 +121,7 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
 StructureTest test_beside(const Analysis& analysis, const std::vector<std::size_t>& chosen,
                           const std::vector<TestedVariable>& variables,
                           const std::vector<Eigen::MatrixXd>& aside = {}) {
-  StructureTest test(analysis.share(), analysis.binned(chosen), analysis.noise(), random_seed, aside);
+  StructureTest test(analysis.partition(), analysis.binned(chosen), analysis.noise(), random_seed, aside);
   for (const TestedVariable& variable : variables) test.add(variable);
   return test;
 }
@@ -147,10 +148,10 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
                                               const DiagnoseOptions& options,
                                               const std::vector<std::vector<double>>& after,
                                               Unexplained& found) {
-  std::vector<TestedVariable> variables = flown_variables(analysis.flights());
+  std::vector<TestedVariable> variables = quantity_variables(analysis.flights());
   if (!options.whole_file) return variables;
   // Variables computed from the sensors according to the first file.
-  const auto computed = files.share().of_each_flight<std::set<std::string>>([&](std::size_t number) {
+  const auto computed = files.partition().all_gather_flights<std::set<std::string>>([&](std::size_t number) {
     return number > 0 ? std::set<std::string>() : computed_from(files[0], sensors_of(model, reference));
   });
   std::vector<std::pair<TestedVariable, ChangeSlope>> correlated;
@@ -160,7 +161,7 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
       found.computed.push_back(variable.name);
       continue;
     }
-    const ChangeSlope slope = slope_of_changes(analysis.share(), after, variable);
+    const ChangeSlope slope = slope_of_changes(analysis.partition(), after, variable);
     if (slope.is_correlated()) {
       correlated.emplace_back(std::move(variable), slope);
     } else {
@@ -176,9 +177,9 @@ std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const Fl
 bool explains_most_beyond_chance(const StructureTest& test) {
   const std::vector<Structure>& all = test.structures();
   const auto maximum = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
-    return a.gain - a.freedom < b.gain - b.freedom;
+    return a.gain - a.degrees_of_freedom < b.gain - b.degrees_of_freedom;
   });
-  return maximum != all.end() && test.chance_of(maximum->equivalent) < chance;
+  return maximum != all.end() && test.p_value_of(maximum->chi2_one_dof) < max_p_value;
 }
 
 /// Structure of all variables in addition to some effects.
@@ -217,7 +218,7 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis,
     const auto known = std::find_if(flights.begin(), flights.end(), [&flight](const FlightColumns& other) {
       return other.file == flight.file;
     });
-    if (known == flights.end() || !analysis.whole_share().is_local(f)) continue;
+    if (known == flights.end() || !analysis.whole_partition().is_local(f)) continue;
     const auto position = static_cast<std::size_t>(known - flights.begin());
     for (std::size_t k = 0; k < structures.size(); ++k) {
       columns.col(references * as_index(k) + as_index(flight.reference)) =
@@ -249,7 +250,7 @@ void find_places(const Analysis& analysis, const std::vector<const Structure*>& 
   for (std::size_t k = 0; k < traced.size(); ++k) {
     EmpiricalPredictor& variable = variables[k];
     const GroupScore total = search.score(count * k + blind, {count * k});
-    if (total.freedom == 0.0) continue;
+    if (total.degrees_of_freedom == 0.0) continue;
     const double error = std::sqrt(total.covariance(0, 0));
     if (std::abs(total.estimate[0]) > seen * error) {
       variable.components = {"pitot", "p-transducer", "q-transducer"};
@@ -308,7 +309,7 @@ EffectInputs effect_inputs(const std::vector<Finding>& findings, const ModelDefi
 bool are_images(const Analysis& analysis,
                 const std::function<std::array<const std::vector<double>*, 2>(std::size_t flight)>& pair) {
   constexpr double image = 0.95;
-  const auto of_flights = analysis.share().of_each_flight<PairMoments>([&](std::size_t f) {
+  const auto of_flights = analysis.partition().all_gather_flights<PairMoments>([&](std::size_t f) {
     PairMoments own;
     const auto [x, y] = pair(f);
     if (y == nullptr || y->empty()) return own;
@@ -390,11 +391,11 @@ std::vector<const Structure*> add_traced(const Analysis& analysis, const Structu
   std::vector<EmpiricalPredictor>& variables = diagnosis.unexplained.variables;
   std::vector<const Structure*> order;
   for (const Structure& structure : tested.structures()) {
-    if (tested.chance_of(structure.equivalent) < chance) order.push_back(&structure);
+    if (tested.p_value_of(structure.chi2_one_dof) < max_p_value) order.push_back(&structure);
   }
   // A straight line that explains as much as a curve is preferred.
   const auto merit = [](const Structure& each) {
-    return std::max(each.gain - 2.0 * each.freedom, each.line_gain - 2.0);
+    return std::max(each.gain - 2.0 * each.degrees_of_freedom, each.line_gain - 2.0);
   };
   std::sort(order.begin(), order.end(),
             [&](const Structure* a, const Structure* b) { return merit(*a) > merit(*b); });
@@ -403,7 +404,7 @@ std::vector<const Structure*> add_traced(const Analysis& analysis, const Structu
   for (const Structure* const structure : order) {
     if (variables.size() == max_variables) break;
     if (!named.insert(structure->name).second) continue;
-    variables.push_back(predictor_of(*structure, tested.chance_of(structure->equivalent)));
+    variables.push_back(predictor_of(*structure, tested.p_value_of(structure->chi2_one_dof)));
     for (std::size_t k = 0; k < traced.size() && variables.back().similar_to.empty(); ++k) {
       if (variables[k].similar_to.empty() && is_image(analysis, *structure->variable, *traced[k]->variable))
         variables.back().similar_to = variables[k].name;
@@ -419,10 +420,10 @@ std::vector<const Structure*> add_traced(const Analysis& analysis, const Structu
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
   std::vector<FlightOffset> steps;
   if (analysis.flights().size() < 2) return steps;
-  steps = find_mean_offsets(analysis.share(), analysis.binned(chosen), analysis.noise_beside_offsets());
+  steps = find_mean_offsets(analysis.partition(), analysis.binned(chosen), analysis.noise_beside_offsets());
   for (std::size_t f = 0; f < steps.size(); ++f) steps[f].flight = analysis.flights()[f].samples->name;
   steps.erase(std::remove_if(steps.begin(), steps.end(),
-                             [](const FlightOffset& step) { return !(step.p_value < chance); }),
+                             [](const FlightOffset& step) { return !(step.p_value < max_p_value); }),
               steps.end());
   std::sort(steps.begin(), steps.end(),
             [](const FlightOffset& a, const FlightOffset& b) { return std::abs(a.size) > std::abs(b.size); });
@@ -455,7 +456,7 @@ void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, D
     for (const Quantity input : info->needs) {
       if (!is_role(input) || model.variables.count(input) != 0) continue;
       const std::string role(info_of(input).name);
-      const auto variables = files.share().of_each_flight<std::string>(
+      const auto variables = files.partition().all_gather_flights<std::string>(
           [&](std::size_t flight) { return sure_variable(files[flight], role); });
       for (const EmpiricalPredictor& traced : diagnosis.unexplained.variables) {
         if (std::any_of(variables.begin(), variables.end(),
@@ -492,7 +493,7 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
   const double by_variables = tested.p_value();
   double left = 0.0;
   for (const Structure& structure : tested.structures()) {
-    if (by_variables < chance) left = std::max(left, structure.gain - structure.freedom);
+    if (by_variables < max_p_value) left = std::max(left, structure.gain - structure.degrees_of_freedom);
   }
   LineRival line;
   if (!chosen.empty())
@@ -502,18 +503,18 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
 
   const auto rms_of_flights = [&](std::vector<double> FlightDiagnosis::*series) {
     return rms_of(
-        analysis.share(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].*series; });
+        analysis.partition(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].*series; });
   };
   found.drift_rms = rms_of_flights(&FlightDiagnosis::drift);
   const bool drifts = analysis.drift_gain() > min_drift_gain && found.drift_rms > max_usual_drift;
   found.steps = steps_between(analysis, chosen);
-  found.significant = by_variables < chance || drifts || !found.steps.empty() || overrules;
+  found.significant = by_variables < max_p_value || drifts || !found.steps.empty() || overrules;
   if (found.significant) {
     const std::vector<std::vector<double>> residuals = overrules ? residuals_after(analysis, {}) : after;
-    const double rms = overrules
-                           ? rms_of(
-                                 analysis.share(), [&](std::size_t f) -> const auto& { return residuals[f]; })
-                           : rms_of_flights(&FlightDiagnosis::after);
+    const double rms =
+        overrules ? rms_of(
+                        analysis.partition(), [&](std::size_t f) -> const auto& { return residuals[f]; })
+                  : rms_of_flights(&FlightDiagnosis::after);
     const double noise_rms = diagnosis.noise_rms_with_findings;
     const std::vector<const Structure*> traced = add_traced(analysis, tested, diagnosis);
     // Retained effects describe a part of every reference that the lines do not include.
@@ -525,7 +526,8 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
     // A regime is named only if its residual clearly exceeds that of all samples.
     found.regime = worst_regime(analysis, residuals, std::max(noise_rms, 1.25 * rms));
     found.p_value =
-        std::min(tested.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
+        std::min(tested.p_value(),
+                 drifts ? chi_squared_tail(analysis.drift_gain(), drift_time_constants.size()) : 1.0);
     for (const FlightOffset& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
   }
   note_unnamed_inputs(files, extended, diagnosis);

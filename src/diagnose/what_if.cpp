@@ -125,7 +125,8 @@ PartitionedColumns held_out_columns(const FlightSet& files, std::size_t fitted,
                          : columns.flights[entry - whole].samples;
   };
   return columns_of_entries(
-      files.share().of_entries(file_of_each), read, [&](std::size_t entry, const SamplesOfFlight& samples) {
+      files.partition().of_entries(file_of_each), read,
+      [&](std::size_t entry, const SamplesOfFlight& samples) {
         FlightColumns later = find_columns(samples, model, set, 0, mask, 1.0);
         for (const std::size_t i : used_samples(later.mask, entry < whole ? 0.0 : share))
           later.given[i] = nan;
@@ -155,7 +156,7 @@ std::vector<FlightColumns> shown(const PartitionedColumns& columns,
   for (std::size_t f = 0; f < columns.flights.size(); ++f) {
     if (columns.flights[f].reference == 0 && is_shown(columns.flights[f].file)) entries.push_back(f);
   }
-  return columns.share.of_entries(entries).of_each_flight<FlightColumns>(
+  return columns.partition.of_entries(entries).all_gather_flights<FlightColumns>(
       [&](std::size_t k) { return columns.flights[entries[k]]; });
 }
 

@@ -151,7 +151,7 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Part
         flight.given[i] += flight.base.row(as_index(i)).cast<double>().dot(given_.head(base_));
     }
   }
-  const auto outside = others_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  const auto outside = others_.partition.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const FlightColumns& flight = others_.flights[f];
     PartialSums sums(1, given_.size() + 1);
     for (std::size_t i = 0; i < flight.given.size(); ++i) {
@@ -166,7 +166,7 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Part
   for (const ColumnGroup& group : groups_) identifiable_.push_back(indices_of(group, base_));
   for (const std::vector<std::size_t>& some : subsets_of(found))
     panel.weights.push_back(find_sums(model, set, some, is_robust));
-  panel.alike = as_sums(flights_.share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  panel.alike = as_sums(flights_.partition.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const FlightColumns& flight = flights_.flights[f];
     PartialSums sums(held_out_parts + 1, given_.size() + 1);  // the outliers last
     if (flight.reference != 0) return sums;
@@ -210,14 +210,15 @@ std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const E
 
 /// Weights of the bins in a refit with these coefficients.
 std::vector<Eigen::VectorXd> WhatIfFit::weights_at(const Eigen::VectorXd& values) const {
-  const FlightPartition& share = flights_.share;
+  const FlightPartition& partition = flights_.partition;
   std::vector<Eigen::VectorXd> weights(binned_.bins.size());
   for (std::size_t first = 0, last = 0; first < weights.size(); first = last) {
     std::vector<Eigen::VectorXd> left;
     for (; last < weights.size() && binned_.reference[last] == binned_.reference[first]; ++last) {
-      if (share.is_local(last)) left.emplace_back(binned_.residuals[last] - binned_.columns[last] * values);
+      if (partition.is_local(last))
+        left.emplace_back(binned_.residuals[last] - binned_.columns[last] * values);
     }
-    const double deviation = robust_deviation(share.comm(), left);
+    const double deviation = robust_deviation(partition.comm(), left);
     for (std::size_t f = first; f < last; ++f)
       weights[f] = weights_of_bins(binned_.bins[f], deviation > 0.0 ? deviation : 1.0);
   }
@@ -231,7 +232,7 @@ WhitenedSystem WhatIfFit::least_squares(const Indices& free, bool is_robust, Eig
   constexpr double enough = 1e-3;  // fraction of the uncertainty from the flights
   const std::vector<Eigen::VectorXd> plain = weights;
   WhitenedSystem system;
-  system.share = flights_.share;
+  system.partition = flights_.partition;
   system.rows.resize(weights.size());
   for (int step = 0; step <= max_steps; ++step) {
     for (std::size_t f = 0; f < weights.size(); ++f) {
@@ -246,7 +247,7 @@ WhitenedSystem WhatIfFit::least_squares(const Indices& free, bool is_robust, Eig
     std::vector<Eigen::VectorXd> left;
     for (std::size_t f = 0; f < weights.size(); ++f)
       left.emplace_back(plain[f].asDiagonal() * (binned_.residuals[f] - binned_.columns[f] * values));
-    const double deviation = std::max(robust_deviation(flights_.share.comm(), left), 1e-300);
+    const double deviation = std::max(robust_deviation(flights_.partition.comm(), left), 1e-300);
     for (std::size_t f = 0; f < weights.size(); ++f)
       weights[f] = plain[f].cwiseProduct((left[f] / deviation).unaryExpr(&huber_weight).cwiseSqrt());
   }
@@ -255,7 +256,7 @@ WhitenedSystem WhatIfFit::least_squares(const Indices& free, bool is_robust, Eig
 
 WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const CandidateSet& set,
                                    const std::vector<std::size_t>& found, bool is_robust) {
-  const FlightPartition& share = flights_.share;
+  const FlightPartition& partition = flights_.partition;
   const std::vector<FlightColumns>& flights = flights_.flights;
   std::vector<ResidualAt> residual_at(flights.size());
   Eigen::VectorXd values = given_;
@@ -264,7 +265,7 @@ WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const Candidate
   // Outliers, and the residual where it is not linear, are those at the coefficients of the round before.
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
-    binned_ = in_bins(share, flights, [&](std::size_t f) {
+    binned_ = in_bins(partition, flights, [&](std::size_t f) {
       if (round == 0) return flights[f].given;
       if (round == 1) residual_at[f] = residual_with(model, set, flights[f], found);
       const std::vector<double> residual = residual_for(flights[f], values, residual_at[f]);
@@ -275,26 +276,26 @@ WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const Candidate
   }
   const Indices free = free_columns(found);
   const std::vector<NoiseModel> noise = noise_of_flights(
-      share, binned_,
+      partition, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, free); },
        [&](std::size_t f) -> Eigen::VectorXd { return binned_.residuals[f] - binned_.columns[f] * values; },
-       digest_of(packed(values))},
+       digest_of(serialized(values))},
       [&](const auto& bins, const auto& fitted, const auto& left) {
-        return find_noise(bins, fitted, left, share.threads()).model;
+        return find_noise(bins, fitted, left, partition.threads()).model;
       });
   const WhitenedSystem with_noise =
-      find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);
+      whiten_system(partition, binned_.bins, binned_.columns, binned_.residuals, noise);
   const EffectSearch search(with_noise, base_, groups_);
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     identifiable_[g].clear();
     for (const Eigen::Index column : search.identifiable(g))
       identifiable_[g].push_back(base_ + groups_[g].first + column);
   }
-  const auto score_covariance = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+  const auto score_covariance = partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t f) {
     const Eigen::MatrixXd scored = weights[f].asDiagonal() * system.rows[f].leftCols(values.size());
     return noise_covariance(scored, binned_.bins[f], noise[f], 0);
   });
-  const auto parts = share.sum_of_each_flight<PartialSums>([&](std::size_t f) {
+  const auto parts = partition.all_reduce_flights<PartialSums>([&](std::size_t f) {
     PartialSums sums(held_out_parts, given_.size() + 1);
     for (std::size_t i = 0; i < binned_.bins[f].size(); ++i)
       sums.add(held_out_part(*flights[f].samples, binned_.bins[f].time()[i]),

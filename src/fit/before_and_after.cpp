@@ -6,7 +6,7 @@
 #include "base/phrasing.hpp"
 #include "fit/loss_function.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/packed_residuals.hpp"
+#include "residuals/serialization.hpp"
 
 namespace pcor {
 
@@ -83,8 +83,8 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
   FitSums& sums = result.sums;
   const auto add = [&](const std::vector<std::size_t>& part, bool held) {
     if (part.empty()) return;
-    const std::vector<double> was = only_at(before, part);
-    const std::vector<double> is = only_at(after, part);
+    const std::vector<double> was = select_samples(before, part);
+    const std::vector<double> is = select_samples(after, part);
     const ResidualSums of_before = sums_of_flight(samples, was, noise);
     const ResidualSums of_after = sums_of_flight(samples, is, noise);
     result.parts.push_back({samples.name, held, of_before.statistics(), of_after.statistics()});
@@ -137,7 +137,7 @@ std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& value
       },
       values);
   const FlightSet& holdout = task.options.holdout;
-  const auto held_out = holdout.share().of_each_flight<Compared>([&](std::size_t number) {
+  const auto held_out = holdout.partition().all_gather_flights<Compared>([&](std::size_t number) {
     const auto samples = holdout.samples(number, task.model, task.reference, task.options.mask);
     constexpr double fitted = 0.0;  // fraction of the samples
     std::vector<Mask> mask;

@@ -23,19 +23,20 @@ constexpr double min_part = 120.0;      // s
 class Blocks {
  public:
   explicit Blocks(const std::vector<FitEquations>& equations)
-      : spans_(equations.back().flights->share().of_each_flight<Span>([&](std::size_t flight) -> Span {
-          double begin = infinity;
-          double end = -infinity;
-          for (const FitEquations& stage : equations) {
-            for (const FitFlights* const each : stage.flights->joint()) {
-              const std::vector<double>& time = each->bins(flight).time();
-              if (time.empty()) continue;
-              begin = std::min(begin, time.front());
-              end = std::max(end, time.back());
-            }
-          }
-          return begin <= end ? Span({begin, end - begin}) : std::nullopt;
-        })) {
+      : spans_(
+            equations.back().flights->partition().all_gather_flights<Span>([&](std::size_t flight) -> Span {
+              double begin = infinity;
+              double end = -infinity;
+              for (const FitEquations& stage : equations) {
+                for (const FitFlights* const each : stage.flights->joint()) {
+                  const std::vector<double>& time = each->bins(flight).time();
+                  if (time.empty()) continue;
+                  begin = std::min(begin, time.front());
+                  end = std::max(end, time.back());
+                }
+              }
+              return begin <= end ? Span({begin, end - begin}) : std::nullopt;
+            })) {
     double all = 0.0;
     std::size_t used = 0;
     for (const Span& span : spans_) {
@@ -131,7 +132,7 @@ struct StaticReference {
 
 /// Correlation of the noise against two references in the bins that both have, at least 0.
 double shared_noise(const StaticReference& one, const StaticReference& other) {
-  const auto sums = one.flights->share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+  const auto sums = one.flights->partition().all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
     Eigen::MatrixXd products = Eigen::MatrixXd::Zero(2, 2);
     const std::vector<double>& time = other.flights->bins(flight).time();
     const Eigen::VectorXd& a = one.noise[flight];
@@ -215,14 +216,14 @@ class ScoreSums {
         last_(equations.back()),
         main_(*last_.flights),
         fitted_(as_index(main_.setup().requested.size())),
-        size_(fitted_ + as_index(main_.setup().held.size())),
+        size_(fitted_ + as_index(main_.setup().fixed_with_error.size())),
         numbers_(equations),
         doubts_(doubts_of(main_)),
         blocks_(numbers_.count(), Eigen::MatrixXd::Zero(fitted_, size_ + 1)),
         covariance_(Eigen::MatrixXd::Zero(fitted_, fitted_)),
         by_misfit_(Eigen::MatrixXd::Zero(fitted_, MisfitBasis::count())),
         by_doubt_(Eigen::MatrixXd::Zero(fitted_, as_index(doubts_.size()))),
-        zeros_(main_.share().flights(), Eigen::VectorXd::Zero(fitted_)),
+        zeros_(main_.partition().flights(), Eigen::VectorXd::Zero(fitted_)),
         stages_(main_.count()) {
     Eigen::Index first = 0;
     for (const FitEquations& each : equations) {
@@ -236,7 +237,7 @@ class ScoreSums {
 
   FitCovariance result() const {
     const std::vector<std::size_t>& parameters = main_.setup().requested;
-    const std::vector<std::size_t>& held = main_.setup().held;
+    const std::vector<std::size_t>& held = main_.setup().fixed_with_error;
     Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted_, size_);
     for (const Eigen::MatrixXd& block : blocks_) derivatives += block.leftCols(size_);
     const PriorRows prior = prior_rows(main_.task(), parameters);
@@ -246,7 +247,7 @@ class ScoreSums {
         covariance_ + unit * unit * prior.rows.transpose() * prior.inflation.asDiagonal() * prior.rows;
 
     FitCovariance found;
-    found.information = main_.share().sum_of_each_flight<double>(
+    found.information = main_.partition().all_reduce_flights<double>(
         [&](std::size_t flight) { return information_about_mean(main_.bins(flight), main_.noise(flight)); });
     found.blocks = blocks_.size();
     found.matrix = Eigen::MatrixXd::Zero(size_, size_);
@@ -318,8 +319,8 @@ class ScoreSums {
     std::vector<Eigen::MatrixXd> roots;
     auto block = blocks_.begin();
     auto zero = zeros_.begin();
-    for (const FlightScores& flight : main_.share().of_each_flight<FlightScores>(
-             [&](std::size_t f) { return scores_of(part, f); }, digest_of(packed(solution_.values)))) {
+    for (const FlightScores& flight : main_.partition().all_gather_flights<FlightScores>(
+             [&](std::size_t f) { return scores_of(part, f); }, digest_of(serialized(solution_.values)))) {
       covariance_ += flight.covariance;
       *zero++ += flight.zero;
       if (part.shares_noise) roots.push_back(covariance_root(flight.covariance));

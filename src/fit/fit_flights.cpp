@@ -30,7 +30,7 @@ struct FlightCounts {
 
 std::vector<std::size_t> FitSetup::parameters() const {
   std::vector<std::size_t> all = requested;
-  all.insert(all.end(), held.begin(), held.end());
+  all.insert(all.end(), fixed_with_error.begin(), fixed_with_error.end());
   return all;
 }
 
@@ -88,7 +88,7 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
 bool FitFlights::sees_parameters() {
   constexpr std::size_t min_bins = 100;
   if (bins_ < min_bins || setup_.requested.empty()) return false;
-  const auto largest = share().of_each_flight<double>([this](std::size_t flight) {
+  const auto largest = partition().all_gather_flights<double>([this](std::size_t flight) {
     return bins(flight).size() > 0 ? columns(flight).leftCols(requested()).cwiseAbs().maxCoeff() : 0.0;
   });
   return std::any_of(largest.begin(), largest.end(), [](double each) { return each > 0.0; });
@@ -119,7 +119,7 @@ bool FitFlights::has_moving_columns() const {
 }
 
 void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>& work) {
-  share().visit(task_.threads(), [&](std::size_t number) {
+  partition().visit(task_.threads(), [&](std::size_t number) {
     return [&, number,
             samples =
                 task_.flights.samples(number, task_.model, task_.reference, task_.options.mask)]() mutable {
@@ -131,7 +131,7 @@ void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>&
 std::vector<Eigen::MatrixXd> FitFlights::of_local(
     const std::function<Eigen::MatrixXd(std::size_t, const FitFlight&)>& make) {
   std::vector<Eigen::MatrixXd> own(count());
-  share().attempt(
+  partition().attempt(
       [&] { visit([&](std::size_t number, const FitFlight& fit) { own[number] = make(number, fit); }); });
   return own;
 }
@@ -140,7 +140,7 @@ std::vector<Eigen::VectorXd> FitFlights::of_bins(
     const std::function<Eigen::VectorXd(std::size_t)>& make) const {
   std::vector<Eigen::VectorXd> own;
   for (std::size_t flight = 0; flight < count(); ++flight) {
-    if (share().is_local(flight)) own.push_back(make(flight));
+    if (partition().is_local(flight)) own.push_back(make(flight));
   }
   return own;
 }
@@ -156,7 +156,7 @@ void FitFlights::evaluate(std::size_t flight, const FitFlight& fit) {
 void FitFlights::evaluate_at(const Eigen::VectorXd& parameters) {
   if (rows_are_linear_ || parameters == evaluated_) return;
   evaluated_ = parameters;
-  share().attempt(
+  partition().attempt(
       [&] { visit([this](std::size_t flight, const FitFlight& fit) { evaluate(flight, fit); }); });
 }
 
@@ -173,7 +173,8 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   for (std::size_t k = 1; k < joint_.size(); ++k) joint_[k]->prepare(parameters);
   if (parameters == prepared_) return evaluate_at(parameters);
   prepared_ = evaluated_ = parameters;
-  share().attempt([&] { visit([this](std::size_t flight, const FitFlight& fit) { prepare(flight, fit); }); });
+  partition().attempt(
+      [&] { visit([this](std::size_t flight, const FitFlight& fit) { prepare(flight, fit); }); });
 }
 
 Eigen::VectorXd FitFlights::residual(std::size_t flight, const Eigen::VectorXd& parameters) const {
@@ -225,8 +226,8 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       part.factor = factor.factor();
       return part;
     };
-    for (const Reduction& part :
-         share().of_each_flight<Reduction>(reduced, digest_of(packed(parameters)), task_.threads())) {
+    for (const Reduction& part : partition().all_gather_flights<Reduction>(
+             reduced, digest_of(serialized(parameters)), task_.threads())) {
       sum.add(part.factor);
       whole.absorbed += part.absorbed;
       whole.cost += part.cost;
@@ -253,7 +254,7 @@ Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters)
 void FitFlights::weigh(const Eigen::VectorXd& parameters) {
   prepare(parameters);
   for (FitFlights* const each : joint()) {
-    const double deviation = robust_deviation(share().comm(), each->of_bins([&](std::size_t flight) {
+    const double deviation = robust_deviation(partition().comm(), each->of_bins([&](std::size_t flight) {
       return each->residual(flight, parameters);
     }));
     each->deviation_ = deviation > 0.0 ? deviation : 1.0;
@@ -269,8 +270,8 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitIn
       if (!misfit || !sees_law(*each)) return each->residual(flight, parameters);
       return each->residual(flight, parameters) - misfit(*each, flight);
     };
-    fit.state = digest_of(packed(parameters));
-    each->noise_ = noise_of_flights(share(), each->binned_, fit,
+    fit.state = digest_of(serialized(parameters));
+    each->noise_ = noise_of_flights(partition(), each->binned_, fit,
                                     [&](const auto& bins, const auto& some, const auto& left) {
                                       return find_noise(bins, some, left, task_.threads()).model;
                                     });
@@ -278,7 +279,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitIn
 }
 
 double FitFlights::drift_rms() const {
-  const auto& slow = noise_.front().slow;
+  const auto& slow = noise_.front().drift_component_rms;
   return std::sqrt(std::inner_product(slow.begin(), slow.end(), slow.begin(), 0.0));
 }
 
@@ -290,12 +291,12 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters) {
          each->of_bins([&](std::size_t flight) { return each->rows(flight, parameters, {}).innovations; }))
       innovations.push_back(own);
   }
-  return robust_deviation(share().comm(), innovations);
+  return robust_deviation(partition().comm(), innovations);
 }
 
 std::size_t FitFlights::outliers(const Eigen::VectorXd& parameters, double limit) {
   evaluate_at(parameters);
-  return share().sum_of_each_flight<std::size_t>([&](std::size_t flight) {
+  return partition().all_reduce_flights<std::size_t>([&](std::size_t flight) {
     const Eigen::VectorXd innovations = rows(flight, parameters, {}).innovations;
     return spikes_[flight] +
            static_cast<std::size_t>(

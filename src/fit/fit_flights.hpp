@@ -16,15 +16,15 @@
 #include "fit/fit_task.hpp"
 #include "fit/loss_function.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 
 namespace pcor::internal {
 
 /// Input of a fit from the flights, or of a stage of it.
 struct FitSetup {
-  Eigen::VectorXd values{};              ///< start of all parameters; masks use these values
-  std::vector<std::size_t> requested{};  ///< the fitted parameters
-  std::vector<std::size_t> held{};       ///< fixed parameters with an error stated in the files
+  Eigen::VectorXd values{};                     ///< start of all parameters; masks use these values
+  std::vector<std::size_t> requested{};         ///< the fitted parameters
+  std::vector<std::size_t> fixed_with_error{};  ///< fixed parameters with an error stated in the files
   /// If not empty, only samples in these intervals are used, and every interval has a separate offset of
   /// delta-p/p.
   std::vector<Regime> regimes{};
@@ -165,18 +165,18 @@ class FitFlights {
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
     using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<const FitFlight&>()))>;
     static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
-    return share().gather_flights<Part>(
+    return partition().all_gather_parts<Part>(
         [&](std::vector<Part>& parts) {
           visit([&](std::size_t number, const FitFlight& fit) { parts[number] = make(number, fit); });
         },
-        digest_of(packed(parameters)));
+        digest_of(serialized(parameters)));
   }
 
   /// Matrices of the local flights from their samples; empty for the others.
   std::vector<Eigen::MatrixXd> of_local(
       const std::function<Eigen::MatrixXd(std::size_t flight, const FitFlight& fit)>& make);
 
-  const FlightPartition& share() const { return task_.flights.share(); }
+  const FlightPartition& partition() const { return task_.flights.partition(); }
 
   /// Whether other samples of any flight are used at these parameters.
   bool masks_change_at(const Eigen::VectorXd& parameters);

@@ -141,7 +141,7 @@ FitTask fit_task(const ModelDefinition& model, const References& references, con
   FitTask task{model, reference, options, flights};
   find_parameters(task);
   task.doubt = stated_covariance_of(task);
-  task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
+  task.report_progress = [&progress = options.progress, passes = std::size_t{0}]() mutable {
     ++passes;
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
   };

@@ -63,13 +63,13 @@ std::string unfitted_name(const ModelDefinition& model) {
   return name.substr(0, std::min(name.find(", fitted to "), name.find(", improved on ")));
 }
 
-void descend(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
-             const std::string& flights) {
+void record_provenance(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
+                       const std::string& flights) {
   ProvenanceList before;
   if (const auto* const earlier = find_entry<ProvenanceList>(from.provenance, before_key)) before = *earlier;
   before.emplace_back(entry_of(from));
   set_entry(made.provenance, before_key, std::move(before));
-  made.law.in_processing = false;
+  made.law.operational = false;
   made.model.name = fmt::format("{}, {} {}", unfitted_name(from), how, flights);
 }
 
@@ -135,7 +135,7 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
     if (entry.first == "temperature" || entry.first == "added") provenance.push_back(std::move(entry));
   }
   file.provenance = std::move(provenance);
-  descend(file, given, "fitted to", flights);
+  record_provenance(file, given, "fitted to", flights);
   file.law = {};
   file.law.source = "refit by pcor to " + fit.reference_text;
   file.law.rms_hpa = fit.rms;

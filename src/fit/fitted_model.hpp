@@ -16,11 +16,11 @@ std::string unfitted_name(const ModelDefinition& model);
 /// `before` of its source models, oldest first: name, creation time and source of each, if known. Names do
 /// not grow with the number of fits.
 /// @param how "fitted to" or "improved on"
-void descend(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
-             const std::string& flights);
+void record_provenance(ModelDefinition& made, const ModelDefinition& from, const std::string& how,
+                       const std::string& flights);
 
 /// `given` with the coefficients of a fit, their standard errors and covariance, a name with the fitted
-/// flights, and its origin (`descend`). Errors of held parameters and of the temperature are kept.
+/// flights, and its origin (`record_provenance`). Errors of held parameters and of the temperature are kept.
 /// @param first index of the first parameter of this file in the fit
 /// @param flights title of the fitted flights
 ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, const RefitResult& fit,

@@ -56,7 +56,7 @@ class GpsSolver {
         covariance_(covariance),
         is_alone_(covariance.matrix.size() == 0),
         requested_(flights.front()->setup().requested),
-        fixed_coefficients_(flights.front()->setup().held),
+        fixed_coefficients_(flights.front()->setup().fixed_with_error),
         count_(as_index(requested_.size())),
         before_(solution.values(requested_)),
         carried_(Eigen::MatrixXd::Zero(count_, as_index(fixed_coefficients_.size()))),
@@ -178,7 +178,7 @@ class GpsSolver {
         samples_ += parts[f].samples;
       }
     }
-    task_.tell();
+    task_.report_progress();
     if (samples_ == 0)
       throw Error(Error::Code::samples,
                   "wind and height have no sample in these flights, because they need more than 40 m/s; omit "

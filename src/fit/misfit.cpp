@@ -157,11 +157,11 @@ std::vector<Eigen::MatrixXd> binned_states(FitFlights& flights) {
   });
 }
 
-MisfitBasis::MisfitBasis(const FlightPartition& share, const std::vector<Eigen::MatrixXd>& in_bins) {
+MisfitBasis::MisfitBasis(const FlightPartition& partition, const std::vector<Eigen::MatrixXd>& in_bins) {
   // The means first: the difference of large squares would not show that a state is constant.
   mean_ = Eigen::VectorXd::Zero(states);
   const auto moments_about_mean = [&]() -> Eigen::ArrayXXd {  // mean value and mean square of each state
-    const auto sum = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    const auto sum = partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
       Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, 3);  // number, sum and sum of squares
       for (Eigen::Index s = 0; s < states; ++s) {
         for (const double value : in_bins[flight].col(s)) {
@@ -206,13 +206,13 @@ Eigen::VectorXd Misfit::at(const Eigen::MatrixXd& flown) const {
 Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   Misfit misfit;
   flights.measure_noise(solution.values);
-  const FlightPartition& share = flights.share();
+  const FlightPartition& partition = flights.partition();
   std::map<const FitFlights*, std::vector<Eigen::MatrixXd>> states_of_reference;
   for (FitFlights* const each : flights.joint()) {
     if (flights.sees_law(*each)) states_of_reference[each] = binned_states(*each);
   }
   const std::vector<Eigen::MatrixXd>& in_bins = states_of_reference[&flights];
-  misfit.bumps = MisfitBasis(share, in_bins);
+  misfit.bumps = MisfitBasis(partition, in_bins);
   if (flights.bins() < min_bins) return misfit;
   const Eigen::Index own = as_index(flights.setup().requested.size());
   const Eigen::Index count = MisfitBasis::count();
@@ -222,16 +222,16 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
         flights.residual(flight, solution.values);
     return all;
   };
-  const auto plain = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+  const auto plain = partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
     const Eigen::MatrixXd all = rows_of(flight);
     return Eigen::MatrixXd(all.transpose() * all);
   });
-  const auto bins = share.sum_of_each_flight<double>(
+  const auto bins = partition.all_reduce_flights<double>(
       [&](std::size_t flight) { return static_cast<double>(in_bins[flight].rows()); });
   const double rms = std::sqrt(plain(own + count, own + count) / bins);
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
-    const auto white = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+    const auto white = partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
       const Eigen::MatrixXd all = whitened(rows_of(flight), flights.bins(flight), flights.noise(flight), 0);
       return Eigen::MatrixXd(all.transpose() * all);
     });
@@ -252,7 +252,7 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
     });
   }
   misfit.between_flights =
-      variance_between(share.of_each_flight<std::pair<double, double>>([&](std::size_t flight) {
+      variance_between(partition.all_gather_flights<std::pair<double, double>>([&](std::size_t flight) {
         const Eigen::VectorXd left = flights.residual(flight, solution.values) - misfit.at(in_bins[flight]);
         if (left.size() == 0) return std::pair(0.0, 0.0);
         return std::pair(left.mean(),

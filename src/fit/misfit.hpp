@@ -15,7 +15,7 @@ class MisfitBasis {
  public:
   MisfitBasis() = default;
   /// Finds mean and deviation of each state over all flights. @param states of the local flights, in bins
-  MisfitBasis(const FlightPartition& share, const std::vector<Eigen::MatrixXd>& states);
+  MisfitBasis(const FlightPartition& partition, const std::vector<Eigen::MatrixXd>& states);
 
   static Eigen::Index count();
   /// One row for each bin. @param states in these bins

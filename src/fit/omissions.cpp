@@ -56,7 +56,7 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
     rows.topRows(size) = flights.reduce(values, loss).factor.topRows(size);
     rows.bottomLeftCorner(prior.rows(), size) = prior;
     rows.bottomRightCorner(prior.rows(), 1) = prior * (values(requested) - drawn.centre);
-    task.tell();
+    task.report_progress();
     return rows;
   };
   const Eigen::MatrixXd rows_of_fit = rows_at(solution.values);

@@ -83,15 +83,15 @@ void require_sense(const FlightSet& flights, const ModelDefinition& model, const
 struct Fitted {
   Solution solution{};
   std::vector<std::vector<std::size_t>> stages{};
-  std::vector<std::size_t> parameters{};  // sorted by stage
-  std::vector<std::size_t> held{};        // fixed parameters with an error stated in the files
-  std::vector<int> stage_of{};            // one per parameter
-  std::shared_ptr<FitFlights> flights{};  // all samples and all parameters that were fitted
+  std::vector<std::size_t> parameters{};        // sorted by stage
+  std::vector<std::size_t> fixed_with_error{};  // fixed parameters with an error stated in the files
+  std::vector<int> stage_of{};                  // one per parameter
+  std::shared_ptr<FitFlights> flights{};        // all samples and all parameters that were fitted
   std::vector<FitEquations> equations{};
   bool has_converged = true;
 
   FitSetup setup(const std::vector<Regime>& regimes = {}) const {
-    return {solution.values, parameters, held, regimes};
+    return {solution.values, parameters, fixed_with_error, regimes};
   }
 };
 
@@ -137,7 +137,8 @@ Fitted at_start(const FitTask& task) {
     fitted.parameters.insert(fitted.parameters.end(), stage.begin(), stage.end());
   }
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
-    if (fitted.stage_of[p] == 0 && task.doubt(as_index(p), as_index(p)) > 0.0) fitted.held.push_back(p);
+    if (fitted.stage_of[p] == 0 && task.doubt(as_index(p), as_index(p)) > 0.0)
+      fitted.fixed_with_error.push_back(p);
   }
   fitted.solution.values = task.start;
   fitted.solution.at_bound.resize(task.parameters.size(), false);
@@ -309,7 +310,7 @@ Notes notes_of(const RefitResult& result, const FitTask& task, const Fitted& fit
     add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
                               compared.flown));
     add(error_notes(result, fitted.flights->count(), fitted.has_converged,
-                    task.uses_prior() || !fitted.held.empty()));
+                    task.uses_prior() || !fitted.fixed_with_error.empty()));
   }
   add(compared.notes);
   add(bound_notes(task, fitted.solution, result.condition_number));
@@ -378,7 +379,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.jackknife_parts = covariance.blocks;
   const BeforeAndAfter compared =
       before_and_after(flights, solution.values, covariance.by_flights, misfit.left, result);
-  task.tell();
+  task.report_progress();
   const FitSums& sums = compared.sums;
   result.samples = sums.after.samples;
   // Unknown if samples have no residual with the input model.
@@ -406,7 +407,8 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.left = by_gps_alone ? nan : misfit.left;
   result.between_flights = by_gps_alone ? nan : std::sqrt(misfit.between_flights);
   // Gusts are in the residual of the wind: a better law need not make it smaller.
-  result.worse = why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
+  result.rejection_reason =
+      why_worse(result, by_gps_alone ? infinity : sums.rms_of(sums.bulk_squares_before));
   result.least_squares_rms = gps ? nan : sums.rms_of(squares.minimum());
   // Gusts and drifts of the wind are not errors of the model.
   if (!by_gps_alone) result.warnings = fit_warnings(result, compared.longest_run);
@@ -505,20 +507,20 @@ std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flig
                                                            const ModelDefinition& model,
                                                            const References& references,
                                                            const RefitOptions& options) {
-  const FlightPartition& share = flights.share();
+  const FlightPartition& partition = flights.partition();
   RefitOptions own = options;
   own.threads = Workers(flights.comm(), options.threads).threads;
   own.holdout = FlightSet();
   own.progress = nullptr;
   std::size_t done = 0;
-  return share.of_each_flight<std::vector<FittedParameter>>([&](std::size_t number) {
+  return partition.all_gather_flights<std::vector<FittedParameter>>([&](std::size_t number) {
     std::vector<FittedParameter> found;
     try {
       found = refit(flights.only(number), model, references, own).parameters;
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
     }
-    if (options.progress) options.progress(++done, share.local_count());
+    if (options.progress) options.progress(++done, partition.local_count());
     return found;
   });
 }

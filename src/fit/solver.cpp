@@ -258,7 +258,7 @@ class Solver {
   /// unknowns.
   Step linear_step(const ScaledLoss& loss) {
     const Reduction reduction = flights_.reduce(solution_.values, loss, free_);
-    task_.tell();
+    task_.report_progress();
     const Eigen::VectorXd before = unknowns();
     const Eigen::Index size = before.size();
     const Eigen::MatrixXd drawn = solution_.deviation * prior_.rows;
@@ -330,7 +330,7 @@ class Solver {
     const auto reduce = [&](const Eigen::VectorXd& unknowns) {
       Eigen::VectorXd values = solution_.values;
       values(free_) = unknowns;
-      task_.tell();
+      task_.report_progress();
       return flights_.reduce(values, loss, free_);
     };
     ceres::Problem problem;

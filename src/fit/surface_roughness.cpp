@@ -82,12 +82,12 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
   if (has_new_noise) flights.measure_noise(solution.values);
   const double unit = solution.deviation * solution.deviation;
   const Eigen::Index count = as_index(requested.size());
-  const auto all = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+  const auto all = flights.partition().all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
     const FitRows rows = flights.rows(flight, solution.values, {});
     const Eigen::MatrixXd own = side_by_side(rows.columns.leftCols(count), rows.innovations);
     return Eigen::MatrixXd(own.transpose() * own);
   });
-  const auto noise = flights.share().sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t flight) {
+  const auto noise = flights.partition().all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
     const Eigen::MatrixXd weighted =
         flights.weighted(flight, flights.rows(flight, solution.values, {}).columns.leftCols(count));
     return noise_covariance(weighted, flights.bins(flight), flights.noise(flight), 0);

@@ -10,7 +10,7 @@
 namespace pcor {
 namespace {
 
-std::atomic<const char*> in_hand{nullptr};
+std::atomic<const char*> current_path{nullptr};
 std::atomic<clockid_t> readers_clock{CLOCK_PROCESS_CPUTIME_ID};
 std::atomic<double> taken_at{0.0};
 std::atomic<double> worked_until{0.0};   // processor time
@@ -28,15 +28,15 @@ double seconds_of(clockid_t clock) noexcept {
 
 }  // namespace
 
-const char* current_input_path() noexcept { return in_hand; }
+const char* current_input_path() noexcept { return current_path; }
 
 bool had_previous_input() noexcept { return has_others; }
 
-double current_input_seconds() noexcept { return in_hand ? seconds_of(readers_clock) - taken_at : 0.0; }
+double current_input_seconds() noexcept { return current_path ? seconds_of(readers_clock) - taken_at : 0.0; }
 
 double seconds_of_waiting() noexcept {
   constexpr double works = 0.01;  // s, more than the signal handlers use in half a minute
-  if (in_hand == nullptr) return 0.0;
+  if (current_path == nullptr) return 0.0;
   const double used = seconds_of(readers_clock), now = seconds_of(CLOCK_MONOTONIC);
   if (std::abs(used - worked_until) >= works) {
     worked_until = used;
@@ -45,18 +45,18 @@ double seconds_of_waiting() noexcept {
   return now - worked_at;
 }
 
-internal::FileInHand::FileInHand(const std::filesystem::path& path) noexcept : before_(in_hand) {
+internal::CurrentInput::CurrentInput(const std::filesystem::path& path) noexcept : before_(current_path) {
   clockid_t clock = CLOCK_PROCESS_CPUTIME_ID;
   pthread_getcpuclockid(pthread_self(), &clock);
   readers_clock = clock;
   taken_at = worked_until = seconds_of(clock);
   worked_at = seconds_of(CLOCK_MONOTONIC);
-  in_hand = path.c_str();
+  current_path = path.c_str();
   const std::size_t hash = std::filesystem::hash_value(path);
   std::size_t none = 0;
   if (!first_path.compare_exchange_strong(none, hash) && none != hash) has_others = true;
 }
 
-internal::FileInHand::~FileInHand() { in_hand = before_; }
+internal::CurrentInput::~CurrentInput() { current_path = before_; }
 
 }  // namespace pcor

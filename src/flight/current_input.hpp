@@ -7,12 +7,12 @@
 namespace pcor::internal {
 
 /// Makes a file the one that is being read, from now and as long as this lives. The path must outlive it.
-class FileInHand {
+class CurrentInput {
  public:
-  explicit FileInHand(const std::filesystem::path& path) noexcept;
-  FileInHand(const FileInHand&) = delete;
-  FileInHand& operator=(const FileInHand&) = delete;
-  ~FileInHand();
+  explicit CurrentInput(const std::filesystem::path& path) noexcept;
+  CurrentInput(const CurrentInput&) = delete;
+  CurrentInput& operator=(const CurrentInput&) = delete;
+  ~CurrentInput();
 
  private:
   const char* before_;

@@ -151,7 +151,7 @@ struct Flight::Implementation {
   std::vector<std::optional<Variable>> variables;  // requested names, in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
   std::unordered_map<int, RecordMeans> means;               // key: id of the variable
-  std::unordered_map<std::string, std::string> attributes;  // those of the file, by requested name
+  std::unordered_map<std::string, std::string> attributes;  // attributes of the file, by requested name
   std::vector<double> scratch;
   std::vector<double> flags;
 
@@ -186,7 +186,7 @@ struct Flight::Implementation {
   // A file has hundreds of variables with ten attributes each; few of them are needed.
   Variable& variable(std::size_t number) {
     if (!variables[number]) {
-      const FileInHand in_hand(file->path());
+      const CurrentInput current(file->path());
       variables[number] = describe(*file, static_cast<int>(number), source.dimension);
     }
     return *variables[number];
@@ -378,7 +378,7 @@ struct Flight::Implementation {
   }
 
   void read_numbers(int id, RecordBlock block, double* out) const {
-    const FileInHand in_hand(file->path());
+    const CurrentInput current(file->path());
     file->read(id, block, out);
   }
 
@@ -443,7 +443,7 @@ struct Flight::Implementation {
 Flight::Flight(const std::filesystem::path& path, TimestampAlignment timestamp_alignment)
     : Flight(open_flight_file(path), timestamp_alignment) {}
 Flight::Flight(std::unique_ptr<FlightFile> file, TimestampAlignment timestamp_alignment) {
-  const FileInHand in_hand(file->path());
+  const CurrentInput current(file->path());
   implementation_ = std::make_unique<Implementation>(std::move(file), timestamp_alignment);
 }
 Flight::Flight(Flight&&) noexcept = default;
@@ -462,17 +462,16 @@ const std::string& Flight::time_variable() const {
 }
 
 std::string Flight::attribute(const std::string& name) const {
-  const auto [known, is_new] = implementation_->attributes.try_emplace(name);
-  if (!is_new) return known->second;
-  std::string& text = known->second;
-  text = file().text_attribute(FlightFile::whole_file, name);
+  const auto known = implementation_->attributes.find(name);
+  if (known != implementation_->attributes.end()) return known->second;
+  std::string text = file().text_attribute(FlightFile::whole_file, name);
   if (!text.empty()) return text;
   for (const std::string& other : file().attribute_names(FlightFile::whole_file)) {
     if (strcasecmp(other.c_str(), name.c_str()) != 0) continue;
     text = file().text_attribute(FlightFile::whole_file, other);
     if (!text.empty()) break;
   }
-  return text;
+  return implementation_->attributes.emplace(name, std::move(text)).first->second;
 }
 
 std::string Flight::aircraft() const {

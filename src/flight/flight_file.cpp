@@ -82,7 +82,7 @@ std::string ncatted_name(const std::string& variable) {
 
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
   require_readable(path);
-  const FileInHand in_hand(path);
+  const CurrentInput current(path);
   if (is_netcdf(path)) return std::make_unique<NetcdfFile>(path);
   if (is_icartt(path)) return open_icartt(path);
   if (path.extension() == ".gz")

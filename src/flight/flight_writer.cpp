@@ -86,13 +86,13 @@ struct FlightWriter::Implementation {
   std::vector<double> copied_times, copied_values;  // one block
   bool defining = true;
   std::size_t time_records = 0;
-  double first_time = 0, last_time = 0;
+  double start_time = 0, end_time = 0;
 
   Implementation(const std::filesystem::path& output, const Flight* flight, const NewFlight& start,
                  FileDescription what)
       : input(flight),
         description(std::move(what)),
-        midnight(midnight_before(start.first_time)),
+        midnight(midnight_before(start.start_time)),
         whole_seconds(start.whole_seconds),
         replacement(output) {
     std::error_code code;
@@ -105,7 +105,7 @@ struct FlightWriter::Implementation {
       copies.emplace(*source, source->dimensions_of(time).front(), *file);
     }
     file->attempt(writing, [&] {
-      define_time(start.first_time);
+      define_time(start.start_time);
       describe_file();
     });
   }
@@ -302,7 +302,7 @@ struct FlightWriter::Implementation {
     if (block.count == 0) return;
     std::vector<double> since_midnight(times, times + block.count);
     for (std::size_t i = 0; i < block.count; ++i) {
-      const double before = i == 0 ? last_time : times[i - 1];
+      const double before = i == 0 ? end_time : times[i - 1];
       if (!std::isfinite(times[i]) || (time_records + i > 0 && times[i] <= before))
         file->refuse(Error::Code::time, ": the time of record {} does not follow the previous time",
                      block.first + i);
@@ -311,8 +311,8 @@ struct FlightWriter::Implementation {
         file->refuse(Error::Code::time, ": the time of record {} is not a whole second", block.first + i);
     }
     file->variable(time_variable).putVar({block.first}, {block.count}, since_midnight.data());
-    if (time_records == 0) first_time = times[0];
-    last_time = times[block.count - 1];
+    if (time_records == 0) start_time = times[0];
+    end_time = times[block.count - 1];
     time_records += block.count;
   }
 
@@ -404,10 +404,10 @@ struct FlightWriter::Implementation {
         file->refuse(Error::Code::usage, ": {} was written for {} of {} records", variable.name,
                      variable.records, time_records);
 
-    put_text(global, "time_coverage_start", utc_text(first_time, iso_8601));
-    put_text(global, "time_coverage_end", utc_text(last_time, iso_8601));
-    put_text(global, "TimeInterval", utc_text(first_time, "%H:%M:%S-") + utc_text(last_time, "%H:%M:%S"));
-    put_text(global, "time_coverage_duration", duration_text(last_time - first_time));
+    put_text(global, "time_coverage_start", utc_text(start_time, iso_8601));
+    put_text(global, "time_coverage_end", utc_text(end_time, iso_8601));
+    put_text(global, "TimeInterval", utc_text(start_time, "%H:%M:%S-") + utc_text(end_time, "%H:%M:%S"));
+    put_text(global, "time_coverage_duration", duration_text(end_time - start_time));
     for (const Written& variable : written)
       if (!variable.flags) put_range(variable.id, "actual_range", variable.range);
     for (const GeospatialRange& each : geospatial_ranges)

@@ -120,7 +120,7 @@ void NetcdfCopy::copy_block(const Copied& variable, RecordBlock block) {
   buffer_.resize((variable.over_time ? block.count : 1) * variable.record_bytes);
   void* const values = buffer_.data();  // any type
   {
-    const FileInHand in_hand(source_.path());
+    const CurrentInput current(source_.path());
     source_.attempt("cannot read " + source_.variable_name(variable.from),
                     [&] { source_.variable(variable.from).getVar(start, count, values); });
   }

@@ -161,8 +161,8 @@ NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)), sta
 }
 
 NetcdfFile::~NetcdfFile() {
-  std::optional<FileInHand> in_hand;  // the library may crash where the system does not close the file
-  if (state_ != FileState()) in_hand.emplace(path_);
+  std::optional<CurrentInput> current;  // the library may crash where the system does not close the file
+  if (state_ != FileState()) current.emplace(path_);
   file_.close_quietly();
 }
 

@@ -11,7 +11,7 @@ namespace pcor {
 std::vector<std::string> reasons_unreadable(const std::vector<std::filesystem::path>& flights,
                                             Communicator& comm) {
   return internal::partition_flights(comm, flights)
-      .of_each_flight<std::string>([&](std::size_t number) -> std::string {
+      .all_gather_flights<std::string>([&](std::size_t number) -> std::string {
         try {
           const Flight opened(flights[number]);
           return "";

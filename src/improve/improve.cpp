@@ -116,7 +116,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
     const std::vector<std::string> names_of_parameters = parameter_names(added.effect);
     for (std::size_t p = 0; p < names_of_parameters.size(); ++p) {
       // The flights cannot separate a held parameter from others.
-      if (std::count(added.held.begin(), added.held.end(), names_of_parameters[p]) > 0)
+      if (std::count(added.fixed.begin(), added.fixed.end(), names_of_parameters[p]) > 0)
         extended.file.fits.back()[p].fixed = true;
     }
     if (added.is_alike) extended.alike.push_back(added.effect.id);
@@ -139,7 +139,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   Improvement improvement = loop.run(model);
   all.require_unchanged();
   const bool has_added = improvement.model.model.effects.size() > model.model.effects.size();
-  descend(improvement.model, model, has_added ? "improved on" : "fitted to", flights.title());
+  record_provenance(improvement.model, model, has_added ? "improved on" : "fitted to", flights.title());
   return improvement;
 }
 

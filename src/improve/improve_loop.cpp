@@ -108,7 +108,7 @@ class ForwardSelection {
   }
 
   Improvement run() {
-    while (result_.why_stopped.empty()) next_step();
+    while (result_.stop_explanation.empty()) next_step();
     choose_among_rivals();
     add_surface();
     compare_with_the_given();
@@ -245,15 +245,15 @@ class ForwardSelection {
       if (!is_smaller || !compared.is_better()) {
         const std::string why =
             is_smaller ? fmt::format("the decrease of chi2, {:.0f} +- {:.0f}, is not significant",
-                                     compared.gain, compared.gain_error)
+                                     compared.chi2_reduction, compared.chi2_reduction_error)
                        : fmt::format("it must reduce the rms by {:.0f} %", 100.0 * (1.0 - unnamed_limit));
-        result_.why_stopped += fmt::format("; rejected: {}, {}; {}", id, figures, why);
+        result_.stop_explanation += fmt::format("; rejected: {}, {}; {}", id, figures, why);
         return;
       }
       fit = loop_.refit(offer->model);
     } catch (const Error& error) {  // keeps the model without a surface
       if (error.code() == Error::Code::file) throw;
-      result_.why_stopped += fmt::format("; a surface was not fitted: {}", error.what());
+      result_.stop_explanation += fmt::format("; a surface was not fitted: {}", error.what());
       return;
     }
     ImproveStep step;
@@ -271,7 +271,7 @@ class ForwardSelection {
     step.learnt = fmt::format(
         "{}: {:.1f} degrees of freedom; {}, decrease of chi2 {:.0f} +- {:.0f}; the surface describes "
         "the residual and identifies no cause",
-        id, degrees, figures, offer->compared.gain, offer->compared.gain_error);
+        id, degrees, figures, offer->compared.chi2_reduction, offer->compared.chi2_reduction_error);
     if (offer->may_be_of_reference) {
       // The systems are alike, so the surface is as probable on each.
       constexpr double probability = 0.5;
@@ -298,15 +298,16 @@ class ForwardSelection {
     // Without an applied rival the model explains less than with the best one, which shows whether the loop
     // did harm.
     const TrialComparison given = comparison_of(tried, 0, 3, loop_.has_holdout);
-    result_.worse = std::isnan(given.rms_before)  // the input model has no residual on these samples
-                        ? why_worse(comparison_of(tried, 1, 3, loop_.has_holdout), "refitted")
-                        : why_worse(given, "input");
-    if (result_.worse.empty()) result_.worse = why_worse_on_parts();
+    result_.rejection_reason =
+        std::isnan(given.rms_before)  // the input model has no residual on these samples
+            ? why_worse(comparison_of(tried, 1, 3, loop_.has_holdout), "refitted")
+            : why_worse(given, "input");
+    if (result_.rejection_reason.empty()) result_.rejection_reason = why_worse_on_parts();
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
       std::vector<std::size_t> used = flight.fitted;
       used.insert(used.end(), flight.held_out.begin(), flight.held_out.end());
-      const auto shown = [&](std::size_t model) { return only_at(flight.residuals[model], used); };
+      const auto shown = [&](std::size_t model) { return select_samples(flight.residuals[model], used); };
       result_.flights.push_back(
           {flight.samples, flight.fitted.size(), flight.held_out.size(), shown(0), shown(1), shown(2)});
     }
@@ -322,8 +323,8 @@ class ForwardSelection {
     return fmt::format(
         "{}: the rms of the best model is {:.4f} times the rms of the {} model (increase of chi2 {:.0f} +- "
         "{:.0f})",
-        loop_.has_holdout ? "held-out samples" : "these flights", growth, before, -whole.gain,
-        whole.gain_error);
+        loop_.has_holdout ? "held-out samples" : "these flights", growth, before, -whole.chi2_reduction,
+        whole.chi2_reduction_error);
   }
 
   /// Whether all steps together increased the residual of held-out parts of the fitted flights by a large
@@ -366,7 +367,7 @@ class ForwardSelection {
     }
     // After an addition, the diagnosis of the extended model has the next candidates.
     if (result_.steps.size() > added + 1) return;
-    refused_.clear();  // `why_stopped` has them
+    refused_.clear();  // `stop_explanation` has them
     stop(StopReason::no_gain,
          fmt::format("no candidate is kept{}; {}", role_advice(), fmt::join(refusals, "; ")));
   }
@@ -382,7 +383,7 @@ class ForwardSelection {
 
   void stop(StopReason reason, std::string why) {
     result_.stop_reason = reason;
-    result_.why_stopped = std::move(why);
+    result_.stop_explanation = std::move(why);
   }
 
   /// Whether the diagnosis names each cause: then all candidates that help are added, otherwise the first.
@@ -393,7 +394,7 @@ class ForwardSelection {
   std::vector<OfferedEffect> candidates_now() const {
     const Diagnosis& now = diagnosis();
     std::vector<OfferedEffect> candidates;
-    if (now.verdict == Verdict::silent) return candidates;
+    if (now.verdict == Verdict::none_detected) return candidates;
     for (const Finding& finding : now.findings) {
       if (!finding.may_be_of_reference() && !has_effect(result_.fit.model, finding.effect.id))
         candidates.push_back(offered_effect(finding, now));
@@ -500,8 +501,9 @@ class ForwardSelection {
     const bool worse = after > before || (!in_turn && judged.is_worse());
     const std::string figures =
         fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));
-    const std::string gain =
-        in_turn ? "" : fmt::format(" (decrease of chi2 {:.0f} +- {:.0f})", judged.gain, judged.gain_error);
+    const std::string gain = in_turn ? ""
+                                     : fmt::format(" (decrease of chi2 {:.0f} +- {:.0f})",
+                                                   judged.chi2_reduction, judged.chi2_reduction_error);
     if (worse || !(better || (candidate.is_named && candidate.is_sure && fitted.is_better()))) {
       return fmt::format("rejected: {}, {}{}{}", id, figures, gain, worse ? "" : ", not significant");
     }

@@ -173,7 +173,7 @@ void summarise(Report& report, const Improvement& improvement) {
   }
   if (const std::string text = flaps_out_text(improvement.fit.flaps_out, "the fit"); !text.empty())
     report.summary.push_back(sentence(text));
-  if (!improvement.why_stopped.empty()) report.summary.push_back(sentence(improvement.why_stopped));
+  if (!improvement.stop_explanation.empty()) report.summary.push_back(sentence(improvement.stop_explanation));
   std::string verdict = verdict_text(last.diagnosis);
   verdict.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(verdict.front())));
   report.summary.push_back("After the last step: " + verdict + ".");

@@ -9,7 +9,7 @@
 #include "diagnose/rms.hpp"
 #include "parallel/flight_partition.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/packed_residuals.hpp"
+#include "residuals/serialization.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -142,7 +142,7 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
         }
         return flight;
       };
-      for (TrialFlight& flight : some.share().of_each_flight<TrialFlight>(tried_on)) {
+      for (TrialFlight& flight : some.partition().all_gather_flights<TrialFlight>(tried_on)) {
         flight.first_reference = reference == references.front();
         flight.window = reference->window();
         tried.push_back(std::move(flight));
@@ -155,9 +155,10 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
 }
 
 bool TrialComparison::is_better() const {
-  return gain > sure_gain * gain_error || (!is_worse() && first_gain > sure_gain * first_gain_error);
+  return chi2_reduction > sure_gain * chi2_reduction_error ||
+         (!is_worse() && first_chi2_reduction > sure_gain * first_chi2_reduction_error);
 }
-bool TrialComparison::is_worse() const { return gain < -sure_gain * gain_error; }
+bool TrialComparison::is_worse() const { return chi2_reduction < -sure_gain * chi2_reduction_error; }
 
 TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
                               bool held_out) {
@@ -169,14 +170,14 @@ TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size
   for (const TrialFlight& flight : flights) {
     const std::vector<std::size_t>& part = held_out ? flight.held_out : flight.fitted;
     if (part.empty()) continue;
-    const std::vector<double> was = only_at(flight.residuals[before], part);
-    const std::vector<double> is = only_at(flight.residuals[after], part);
+    const std::vector<double> was = select_samples(flight.residuals[before], part);
+    const std::vector<double> is = select_samples(flight.residuals[after], part);
     const Estimate gain =
         gain_between(*flight.samples, was, is, noise_of_flight(*flight.samples, is), flight.window);
-    result.gain += gain.value;
+    result.chi2_reduction += gain.value;
     variance += gain.error * gain.error;
     if (!flight.first_reference) continue;
-    result.first_gain += gain.value;
+    result.first_chi2_reduction += gain.value;
     first_variance += gain.error * gain.error;
     for (const std::size_t i : part) {
       if (std::isnan(was[i]) || std::isnan(is[i])) continue;
@@ -184,8 +185,8 @@ TrialComparison comparison_of(const std::vector<TrialFlight>& flights, std::size
       after_sum.add(is[i]);
     }
   }
-  result.gain_error = std::sqrt(variance);
-  result.first_gain_error = std::sqrt(first_variance);
+  result.chi2_reduction_error = std::sqrt(variance);
+  result.first_chi2_reduction_error = std::sqrt(first_variance);
   result.rms_before = before_sum.rms();
   result.rms_after = after_sum.rms();
   return result;

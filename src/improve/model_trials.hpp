@@ -68,10 +68,10 @@ struct TrialComparison {
   double rms_after = 0.0;
   /// Decrease of the squared residuals with all references, in units of the noise, and its error from the
   /// scatter between minutes.
-  double gain = 0.0;
-  double gain_error = 0.0;
-  double first_gain = 0.0;  ///< first reference alone
-  double first_gain_error = 0.0;
+  double chi2_reduction = 0.0;
+  double chi2_reduction_error = 0.0;
+  double first_chi2_reduction = 0.0;  ///< first reference alone
+  double first_chi2_reduction_error = 0.0;
 
   /// Significant with all references, or with the first one unless all together significantly disagree:
   /// shared effects are hardly visible in comparisons between systems.

@@ -9,10 +9,10 @@ namespace pcor::internal {
 
 /// Effect to add to a model.
 struct AddedEffect {
-  ModelEffect effect;               ///< the model with the starting coefficients
-  std::vector<std::string> held{};  ///< parameters that the flights do not determine
-  bool is_alike = false;            ///< the reference systems have the same effect
-  double probability = 1.0;         ///< posterior probability among the effect and its rivals
+  ModelEffect effect;                ///< the model with the starting coefficients
+  std::vector<std::string> fixed{};  ///< parameters that the flights do not determine
+  bool is_alike = false;             ///< the reference systems have the same effect
+  double probability = 1.0;          ///< posterior probability among the effect and its rivals
 };
 
 /// Effect that the loop may add, and the required result.

@@ -79,7 +79,8 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
     }
   }
   if (!design.by_wind && !design.by_height) return std::nullopt;
-  const Eigen::MatrixXd covariance = inverse_of(information);
+  const Eigen::MatrixXd covariance = symmetric_solution(
+      information, Eigen::MatrixXd(Eigen::MatrixXd::Identity(information.rows(), information.cols())));
   const Eigen::RowVectorXd mean = defects.colwise().mean();
   // Heights do not determine a delta-p proportional to the pressure: it belongs to the level.
   const Eigen::VectorXd level =

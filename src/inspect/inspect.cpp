@@ -106,7 +106,7 @@ class Look {
   Look(const std::filesystem::path& path, TimestampAlignment timestamp_alignment, const std::string& roles)
       : flight_(path, timestamp_alignment),
         roles_(roles),
-        family_(roles.empty() ? family_of(flight_) : family_named(roles)) {
+        naming_(roles.empty() ? naming_of(flight_) : naming_by_name(roles)) {
     result_.path = path.string();
   }
 
@@ -137,12 +137,12 @@ class Look {
     for (const char* name : {"institution", "Institution", "Source", "source"}) {
       if (result_.institution.empty()) result_.institution = flight_.attribute(name);
     }
-    result_.family = family_.name;
-    result_.family_title = family_.title;
+    result_.naming = naming_.name;
+    result_.naming_title = naming_.title;
     if (roles_.empty()) {
-      for (const VariableNaming* family : families_like(flight_)) result_.alike.push_back(family->name);
+      for (const VariableNaming* naming : matching_namings(flight_)) result_.alike.push_back(naming->name);
     } else {
-      result_.alike = {family_.name};
+      result_.alike = {naming_.name};
     }
     result_.time = flight_.time();
     result_.records = flight_.records();
@@ -152,15 +152,15 @@ class Look {
     }
   }
 
-  /// Uses the first family if several match.
+  /// Uses the first convention if several match.
   void find_model() {
     ModelDefinition model;
     // The path to a file of the user is absolute, so that the model may be moved.
     model.roles_from =
-        roles_.empty() || roles_ == family_.name ? family_.name : std::filesystem::absolute(roles_).string();
+        roles_.empty() || roles_ == naming_.name ? naming_.name : std::filesystem::absolute(roles_).string();
     model.model.aircraft = result_.aircraft;
     model.model.name =
-        fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);
+        fmt::format("{} as recorded", result_.aircraft.empty() ? naming_.title : result_.aircraft);
     Notes notes;
     try {
       model = resolve_variables(model, flight_, notes);
@@ -174,7 +174,7 @@ class Look {
     }
     const PressurePair pair{model.variables[Quantity::static_pressure],
                             model.variables[Quantity::dynamic_pressure]};
-    const std::vector<PressurePair>& processed = family_.processed;
+    const std::vector<PressurePair>& processed = naming_.processed;
     result_.is_corrected = std::find(processed.begin(), processed.end(), pair) != processed.end();
     if (result_.is_corrected) {
       result_.notes.push_back(warning_note(fmt::format("{} and {} are already corrected by the archive",
@@ -207,16 +207,17 @@ class Look {
     for (const RoleCandidate& candidate : result_.candidates["static_pressure"]) {
       if (std::none_of(pressures.begin(), pressures.end(),
                        [&](const StatedPressure& each) { return each.variable == candidate.variable; }))
-        pressures.push_back({candidate.variable, family_.unit_of(candidate.variable)});
+        pressures.push_back({candidate.variable, naming_.unit_of(candidate.variable)});
     }
     const QuantityInfo& info = *series_named(series);
     const std::string whole_flight =
         fmt::format("{} to {}", utc_text(flight_.time().first), utc_text(flight_.time().last, "%H:%M:%S"));
     const auto evidence_of = [&](const std::string& variable) {
       const UnitConversion conversion =
-          flight_.conversion(variable, std::string(info.unit), "", family_.unit_of(variable));
+          flight_.conversion(variable, std::string(info.unit), "", naming_.unit_of(variable));
       const HeightEvidence evidence = height_evidence(
-          flight_, read_values(flight_, variable, believed(conversion, info)).values, pressures);
+          flight_, read_values(flight_, variable, within_plausible_range(conversion, info)).values,
+          pressures);
       if (evidence.kind == HeightEvidence::Kind::pressure_altitude &&
           pressure_altitudes_.insert(variable).second) {
         result_.problems.push_back(
@@ -231,8 +232,8 @@ class Look {
       }
       return evidence;
     };
-    for (const std::string& name : family_.names_of(series)) {
-      if (has_values(flight_, name, std::string(info.unit), family_.unit_of(name))) evidence_of(name);
+    for (const std::string& name : naming_.names_of(series)) {
+      if (has_values(flight_, name, std::string(info.unit), naming_.unit_of(name))) evidence_of(name);
     }
     std::vector<RoleCandidate>& candidates = result_.candidates[std::string(series)];
     for (RoleCandidate& each : candidates) {
@@ -282,7 +283,7 @@ class Look {
     return found == result_.candidates.end() ? none : found->second;
   }
 
-  /// Finds the pressure pair of a file that matches no aircraft family. The names then apply to this flight
+  /// Finds the pressure pair of a file that matches no naming convention. The names then apply to this flight
   /// only.
   bool take_pressures_by_evidence(ModelDefinition& model) {
     if (!roles_.empty()) return false;
@@ -334,7 +335,7 @@ class Look {
       const auto role = static_cast<Quantity>(i);
       const std::string name(info_of(role).name);
       const RoleCandidate* const candidate = sure_candidate(name);
-      const bool is_known = !result_.alike.empty() && !first_with_values(flight_, family_, name).empty();
+      const bool is_known = !result_.alike.empty() && !first_with_values(flight_, naming_, name).empty();
       const bool is_chosen =
           has(role) || is_known || has_another(role, temperatures) || has_another(role, humidity_roles);
       if (candidate == nullptr || is_chosen) continue;
@@ -348,7 +349,7 @@ class Look {
 
   /// Whether a variable belongs to a pair from the flight's own processing, by the aircraft's names.
   bool is_processed(const std::string& variable) const {
-    return std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
+    return std::any_of(naming_.processed.begin(), naming_.processed.end(), [&](const PressurePair& pair) {
       return variable == pair.static_pressure || variable == pair.dynamic_pressure;
     });
   }
@@ -395,7 +396,7 @@ class Look {
     const std::string avionics(avionics_static_pressure);
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) && has_temperature;
-    const std::string corrected = processed_static_pressure(flight_, family_);
+    const std::string corrected = processed_static_pressure(flight_, naming_);
     const bool is_independent =
         !corrected.empty() &&
         !is_computed_from(flight_, corrected, model.variables.at(Quantity::static_pressure));
@@ -407,8 +408,8 @@ class Look {
     } else if (model.variables.at(Quantity::static_pressure) != avionics &&
                has_values(flight_, avionics, "hPa")) {
       references = {fmt::format("pressure:{}", avionics)};
-    } else if (is_independent && (family_.name != aircraft_families().front().name ||
-                                  (!has_heights && !result_.is_corrected))) {
+    } else if (is_independent &&
+               (naming_.name != known_namings().front().name || (!has_heights && !result_.is_corrected))) {
       references = {"pressure:" + corrected};
     } else {
       if (has_wind) references.emplace_back("wind");
@@ -447,16 +448,16 @@ class Look {
   }
 
   std::vector<std::string> names_of(const std::string& series) const {
-    std::vector<std::string> names = family_.names_of(series);
+    std::vector<std::string> names = naming_.names_of(series);
     const auto add = [&names](const std::string& name) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     };
-    for (const PressurePair& pair : family_.measured) {
+    for (const PressurePair& pair : naming_.measured) {
       if (series == info_of(Quantity::static_pressure).name) add(pair.static_pressure);
       if (series == info_of(Quantity::dynamic_pressure).name) add(pair.dynamic_pressure);
     }
     if (series == info_of(Quantity::recovery_temperature).name) {
-      for (const Thermometer& thermometer : family_.thermometers) add(thermometer.variable);
+      for (const Thermometer& thermometer : naming_.thermometers) add(thermometer.variable);
     }
     return names;
   }
@@ -468,7 +469,7 @@ class Look {
       std::vector<std::string> found;
       for (const std::string& name : names) {
         const bool is_wrong_height = series == "altitude" && pressure_altitudes_.count(name) != 0;
-        if (!is_wrong_height && has_values(flight_, name, std::string(info.unit), family_.unit_of(name)))
+        if (!is_wrong_height && has_values(flight_, name, std::string(info.unit), naming_.unit_of(name)))
           found.push_back(name);
       }
       if (const RoleCandidate* const candidate = sure_candidate(series);
@@ -490,16 +491,16 @@ class Look {
     InspectedRole& role = result_.roles.emplace_back();
     role.role = series;
     role.variable = found.front();
-    const std::string stated = family_.unit_of(role.variable);
+    const std::string stated = naming_.unit_of(role.variable);
     role.unit = stated.empty() ? flight_.variable(role.variable).units : stated;
-    role.is_turned =
+    role.is_sign_inverted =
         UnitConversion::between(role.unit, std::string(series_named(series)->unit), {}).scale() < 0.0;
     role.rate = flight_.variable(role.variable).rate;
     role.present = present(role.variable);
-    const auto trap = family_.traps.find(role.variable);
-    if (trap != family_.traps.end()) role.trap = trap->second;
-    role.is_verified = std::find(family_.unverified.begin(), family_.unverified.end(), role.variable) ==
-                       family_.unverified.end();
+    const auto caveat = naming_.caveats.find(role.variable);
+    if (caveat != naming_.caveats.end()) role.caveat = caveat->second;
+    role.is_verified = std::find(naming_.unverified.begin(), naming_.unverified.end(), role.variable) ==
+                       naming_.unverified.end();
     role.others.assign(found.begin() + 1, found.end());
   }
 
@@ -515,8 +516,8 @@ class Look {
   }
 
   bool has_ground_components() const {
-    return !first_with_values(flight_, family_, "ground_speed_east").empty() &&
-           !first_with_values(flight_, family_, "ground_speed_north").empty();
+    return !first_with_values(flight_, naming_, "ground_speed_east").empty() &&
+           !first_with_values(flight_, naming_, "ground_speed_north").empty();
   }
 
   /// States a role of the table that the model does not read, because another role replaces it.
@@ -532,8 +533,8 @@ class Look {
       if (variables.count(role) != 0 || reads == variables.end()) continue;
       for (InspectedRole& each : result_.roles) {
         if (each.role != info_of(role).name) continue;
-        each.trap += fmt::format("{}not in the model, which reads {} = {} instead",
-                                 each.trap.empty() ? "" : "; ", info_of(other).name, reads->second);
+        each.caveat += fmt::format("{}not in the model, which reads {} = {} instead",
+                                   each.caveat.empty() ? "" : "; ", info_of(other).name, reads->second);
       }
     }
   }
@@ -557,7 +558,7 @@ class Look {
 
   Flight flight_;
   std::string roles_;
-  const VariableNaming& family_;
+  const VariableNaming& naming_;
   std::set<std::string> pressure_altitudes_;
   std::set<std::string> impossible_heights_;
   Inspection result_;

@@ -21,14 +21,15 @@ namespace {
 
 ReportTable roles_of(const Inspection& flight) {
   ReportTable table{"Roles of " + std::filesystem::path(flight.path).filename().string(),
-                    "Check that these variables are the right ones: names of " + flight.family_title + ".",
+                    "Check that these variables are the right ones: names of " + flight.naming_title + ".",
                     {"role", "variable", "unit", "sign", "samples in a record", "present", "remarks"}};
   for (const InspectedRole& role : flight.roles) {
-    std::string remarks = role.trap;
+    std::string remarks = role.caveat;
     if (!role.is_verified)
       remarks += std::string(remarks.empty() ? "" : "; ") + "name not documented publicly";
-    table.rows.push_back({role.role, role.variable, role.unit, role.is_turned ? "reversed" : "unchanged",
-                          std::to_string(role.rate), fmt::format("{:.1f} %", 100.0 * role.present), remarks});
+    table.rows.push_back({role.role, role.variable, role.unit,
+                          role.is_sign_inverted ? "reversed" : "unchanged", std::to_string(role.rate),
+                          fmt::format("{:.1f} %", 100.0 * role.present), remarks});
   }
   return table;
 }
@@ -38,8 +39,9 @@ ReportTable missing_of(const Inspection& flight) {
                     "Roles without a variable, and the consequences.",
                     {"role", "description", "names searched", "consequence", "effects that need it"}};
   for (const MissingRole& role : flight.missing) {
-    table.rows.push_back({role.role, role.description, fmt::format("{}", fmt::join(role.looked_for, ", ")),
-                          role.cost, fmt::format("{}", fmt::join(role.effects, ", "))});
+    table.rows.push_back({role.role, role.description,
+                          fmt::format("{}", fmt::join(role.searched_names, ", ")), role.cost,
+                          fmt::format("{}", fmt::join(role.effects, ", "))});
   }
   return table;
 }
@@ -63,7 +65,7 @@ Report inspection_report(const std::vector<Inspection>& flights) {
                                                    utc_text(flight.time.first), utc_text(flight.time.last),
                                                    flight.records, flight.time.gap_count));
     report.info.emplace_back("Aircraft", flight.aircraft.empty() ? "not stated" : flight.aircraft);
-    report.info.emplace_back("Names of", flight.family_title);
+    report.info.emplace_back("Names of", flight.naming_title);
     if (const std::string models = applicable_text(flight.laws); !models.empty())
       report.info.emplace_back("Models for this flight", models);
     for (const Note& note : flight.notes) {

@@ -66,13 +66,13 @@ class Plausibility {
 
   /// Values beyond the limits of a role are missing: usually their unit is not the stated one.
   void limits() {
-    const VariableNaming& family = family_of(model_, flight_);
+    const VariableNaming& naming = naming_of(model_, flight_);
     for (const auto& [role, variable] : model_.variables) {
       const QuantityInfo& info = info_of(role);
-      const std::string unit = unit_of_role(model_, family, role);
+      const std::string unit = unit_of_role(model_, naming, role);
       if (!has_values(flight_, variable, std::string(info.unit), unit)) continue;
       const UnitConversion conversion = flight_.conversion(variable, std::string(info.unit), "", unit);
-      const ReadValues read = read_values(flight_, variable, believed(conversion, info));
+      const ReadValues read = read_values(flight_, variable, within_plausible_range(conversion, info));
       const auto impossible = static_cast<double>(read.excluded.impossible);
       const auto present = static_cast<double>(
           std::count_if(read.values.begin(), read.values.end(), [](double x) { return !std::isnan(x); }));

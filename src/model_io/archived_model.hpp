@@ -10,7 +10,7 @@ namespace pcor::internal {
 
 /// Quantities that a temperature fit reads from a flight in addition to the quantities of the model: height,
 /// position and attitude.
-inline constexpr std::array flown_quantities{
+inline constexpr std::array motion_quantities{
     Quantity::altitude, Quantity::latitude, Quantity::ground_speed,   Quantity::ground_track,
     Quantity::heading,  Quantity::roll,     Quantity::vertical_speed, Quantity::flaps};
 

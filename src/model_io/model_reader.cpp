@@ -341,7 +341,7 @@ class Reader final : TomlReader {
              law.valid_to = date(entry);
              last = entry.node;
            }},
-          {"in_processing", [&](const Entry& entry) { law.in_processing = boolean(entry); }},
+          {"in_processing", [&](const Entry& entry) { law.operational = boolean(entry); }},
           {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = not_negative(entry); }},
           {"note", [&](const Entry& entry) { law.note = text(entry); }}});
     if (last != nullptr && law.valid_to < law.valid_from) {

@@ -271,7 +271,7 @@ class Writer {
     line_unless_empty("source", law.source);
     line_unless_empty("valid_from", law.valid_from);
     line_unless_empty("valid_to", law.valid_to);
-    if (law.in_processing) line("in_processing", "true");
+    if (law.operational) line("in_processing", "true");
     if (law.rms_hpa) line("rms_hpa", number(*law.rms_hpa, "rms_hpa of the law"));
     line_unless_empty("note", law.note);
   }

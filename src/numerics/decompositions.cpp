@@ -1,5 +1,7 @@
 #include "numerics/decompositions.hpp"
 
+#include <limits>
+
 namespace pcor::internal {
 namespace {
 
@@ -126,8 +128,9 @@ Eigen::MatrixXd solution_of(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd
 Cholesky::Cholesky(const Eigen::MatrixXd& matrix) {
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
   lower_ = factor.matrixL();
-  log_determinant_ = 2.0 * lower_.diagonal().array().log().sum();
   is_positive_definite_ = factor.info() == Eigen::Success;
+  log_determinant_ = is_positive_definite_ ? 2.0 * lower_.diagonal().array().log().sum()
+                                           : std::numeric_limits<double>::quiet_NaN();
 }
 
 Eigen::VectorXd Cholesky::solve(const Eigen::VectorXd& right) const {

@@ -78,11 +78,11 @@ class Cholesky {
  public:
   explicit Cholesky(const Eigen::MatrixXd& matrix);
 
-  /// If false, the other results have no meaning.
+  /// If false, the other results have no meaning, and the logarithm of the determinant is NaN.
   bool is_positive_definite() const { return is_positive_definite_; }
   /// L; its upper triangle is zero.
   const Eigen::MatrixXd& lower() const { return lower_; }
-  double log_determinant() const { return log_determinant_; }  ///< of the matrix
+  double log_determinant() const { return log_determinant_; }  ///< logarithm of the determinant of the matrix
 
   /// The X with matrix X = right.
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;

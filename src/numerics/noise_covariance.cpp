@@ -63,10 +63,10 @@ Eigen::MatrixXd noise_covariance(const Eigen::MatrixXd& columns, const Binning& 
                                  std::size_t flight) {
   const Eigen::MatrixXd fast = noise.level[flight].asDiagonal() * columns;
   Eigen::MatrixXd covariance = autoregressive_covariance(noise.coefficients, fast, bins.segments());
-  for (std::size_t k = 0; k < slow_times.size(); ++k) {
-    if (noise.slow[k] > 0.0)
-      covariance += noise.slow[k] * noise.slow[k] * columns.transpose() *
-                    with_memory(columns, bins.time(), slow_times[k]);
+  for (std::size_t k = 0; k < drift_time_constants.size(); ++k) {
+    if (noise.drift_component_rms[k] > 0.0)
+      covariance += noise.drift_component_rms[k] * noise.drift_component_rms[k] * columns.transpose() *
+                    with_memory(columns, bins.time(), drift_time_constants[k]);
   }
   return covariance;
 }

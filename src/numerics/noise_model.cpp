@@ -82,7 +82,7 @@ Eigen::VectorXd at_common_mean(const Eigen::VectorXd& residual, const NoiseModel
 std::size_t max_order(const std::vector<Binning>& bins) {
   double width = Binning::usual_width;
   for (const Binning& flight : bins) width = std::max(width, flight.width());
-  return std::max(static_cast<std::size_t>(slow_times.front() / width), std::size_t{1});
+  return std::max(static_cast<std::size_t>(drift_time_constants.front() / width), std::size_t{1});
 }
 
 std::vector<double> concatenated(const std::vector<Eigen::VectorXd>& flights) {
@@ -241,8 +241,9 @@ std::vector<SlowSizes> possible_sizes() {
 
 }  // namespace
 
-bool NoiseModel::drifts() const {
-  return std::any_of(slow.begin(), slow.end(), [](double size) { return size > 0.0; });
+bool NoiseModel::has_drift() const {
+  return std::any_of(drift_component_rms.begin(), drift_component_rms.end(),
+                     [](double size) { return size > 0.0; });
 }
 
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
@@ -290,7 +291,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   RestrictedLikelihood likelihood(bins, columns, residuals, threads);
   std::map<std::vector<double>, RestrictedLikelihood::Value> known;
   const auto with = [&](const std::vector<double>& sizes) {
-    for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
+    for (std::size_t k = 0; k < sizes.size(); ++k) noise.drift_component_rms[k] = sizes[k] * rms;
     const auto [value, is_new] = known.try_emplace(sizes);
     if (is_new) value->second = likelihood(noise);
     return value->second;
@@ -298,8 +299,9 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   const auto cost = [&](const std::vector<double>& sizes) { return with(sizes).restricted; };
   const double longest = longest_duration(bins);
   // Drift slower than half a flight is indistinguishable from the mean of the flight.
-  const auto parts = static_cast<std::size_t>(
-      std::count_if(slow_times.begin(), slow_times.end(), [&](double time) { return time < 0.5 * longest; }));
+  const auto parts =
+      static_cast<std::size_t>(std::count_if(drift_time_constants.begin(), drift_time_constants.end(),
+                                             [&](double time) { return time < 0.5 * longest; }));
   std::vector<double> sizes = least_of(cost, parts);
   // Parts that do not reduce the cost are removed, slowest first: flights determine the slowest part least.
   double minimum = cost(sizes);
@@ -317,7 +319,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   found.likelihood = -best.plain;
   noise.scale = std::sqrt(best.variance);
   for (Eigen::VectorXd& level : noise.level) level *= noise.scale;
-  for (double& slow : noise.slow) slow *= noise.scale;
+  for (double& slow : noise.drift_component_rms) slow *= noise.scale;
   return found;
 }
 
@@ -333,10 +335,10 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   }
   // The means of several flights show drift that is slower than each of them.
   const bool shows_slower_drift = noise.mean && rms > 0.0;
-  if (!noise.drifts() && !shows_slower_drift) return noise;
+  if (!noise.has_drift() && !shows_slower_drift) return noise;
   RestrictedLikelihood likelihood(bins, columns, residuals, threads);
   NoiseModel tried = noise;
-  std::array<double, slow_times.size()> squares{};
+  std::array<double, drift_time_constants.size()> squares{};
   double variance = 0.0;
   double sum = 0.0;
   double maximum = -std::numeric_limits<double>::infinity();
@@ -345,12 +347,12 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
     // A drift slower than a single flight is a constant: the flight does not determine its size.
     bool is_seen = true;
     for (std::size_t k = 0; k < sizes.slowest.size(); ++k) {
-      is_seen = is_seen &&
-                (shows_slower_drift || sizes.slowest[k] == 0.0 || slow_times[first_uncertain + k] <= longest);
+      is_seen = is_seen && (shows_slower_drift || sizes.slowest[k] == 0.0 ||
+                            drift_time_constants[first_uncertain + k] <= longest);
     }
     if (!is_seen) continue;
     for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
-      tried.slow[first_uncertain + k] = sizes.slowest[k] * rms;
+      tried.drift_component_rms[first_uncertain + k] = sizes.slowest[k] * rms;
     const RestrictedLikelihood::Value value = likelihood(tried);
     const double logarithm = std::log(sizes.prior) - 0.5 * value.restricted;
     const double before = logarithm > maximum ? std::exp(maximum - logarithm) : 1.0;  // relative to the most
@@ -360,12 +362,13 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
     sum = before * sum + weight;
     variance = before * variance + weight * value.variance;
     for (std::size_t k = 0; k < squares.size(); ++k)
-      squares[k] = before * squares[k] + weight * value.variance * tried.slow[k] * tried.slow[k];
+      squares[k] = before * squares[k] +
+                   weight * value.variance * tried.drift_component_rms[k] * tried.drift_component_rms[k];
   }
   const double scale = std::sqrt(variance / sum);
   noise.scale *= scale;
   for (Eigen::VectorXd& level : noise.level) level *= scale;
-  for (std::size_t k = 0; k < squares.size(); ++k) noise.slow[k] = std::sqrt(squares[k] / sum);
+  for (std::size_t k = 0; k < squares.size(); ++k) noise.drift_component_rms[k] = std::sqrt(squares[k] / sum);
   return noise;
 }
 
@@ -396,10 +399,11 @@ std::vector<std::size_t> flights_for_noise(const std::vector<NoiseFlight>& fligh
   return chosen;
 }
 
-NoiseModel with_slower_noise(NoiseModel noise) {
-  for (std::size_t k = 2; k < noise.slow.size(); ++k) {
-    const double before = noise.slow[k - 1] * noise.slow[k - 1] + noise.slow[k - 2] * noise.slow[k - 2];
-    noise.slow[k] = std::max(noise.slow[k], std::sqrt(0.5 * before));
+NoiseModel extrapolate_drift(NoiseModel noise) {
+  for (std::size_t k = 2; k < noise.drift_component_rms.size(); ++k) {
+    const double before = noise.drift_component_rms[k - 1] * noise.drift_component_rms[k - 1] +
+                          noise.drift_component_rms[k - 2] * noise.drift_component_rms[k - 2];
+    noise.drift_component_rms[k] = std::max(noise.drift_component_rms[k], std::sqrt(0.5 * before));
   }
   return noise;
 }

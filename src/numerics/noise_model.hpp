@@ -11,7 +11,7 @@ namespace pcor::internal {
 
 /// Time constants of the drift components, s: a factor of four apart, so that their sum approximates a drift
 /// of any such time constant, a random walk, or 1/f noise within a tenth of its power.
-inline constexpr std::array<double, 5> slow_times{50.0, 200.0, 800.0, 3200.0, 12800.0};
+inline constexpr std::array<double, 5> drift_time_constants{50.0, 200.0, 800.0, 3200.0, 12800.0};
 
 /// Noise of a series of binned residuals: an autoregression whose level changes every five minutes, plus
 /// drift components, which are first-order processes with given time constants.
@@ -19,15 +19,15 @@ struct NoiseModel {
   std::vector<double> coefficients{};    ///< coefficients of the autoregression, from bin to bin, 12 at
                                          ///< most
   std::vector<Eigen::VectorXd> level{};  ///< rms of the innovations in each bin of each flight, hPa
-  std::array<double, slow_times.size()> slow{};  ///< rms of each slow part, hPa
-  double common_level = 0.0;                     ///< level to which the level of each five minutes is shrunk,
-                                                 ///< hPa
-  std::optional<double> mean{};                  ///< mean of the residuals, if there are several flights, hPa
-  double scale = 1.0;                            ///< factor on the levels, beyond their estimate from the
-                                                 ///< residuals
+  std::array<double, drift_time_constants.size()> drift_component_rms{};  ///< rms of each component, hPa
+  double common_level = 0.0;     ///< level to which the level of each five minutes is shrunk,
+                                 ///< hPa
+  std::optional<double> mean{};  ///< mean of the residuals, if there are several flights, hPa
+  double scale = 1.0;            ///< factor on the levels, beyond their estimate from the
+                                 ///< residuals
 
   /// Whether any part of it is slow.
-  bool drifts() const;
+  bool has_drift() const;
 };
 
 /// A noise model, and how well it describes the residuals that it was found from.
@@ -90,7 +90,7 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
 /// Noise extrapolated as 1/f noise beyond the length of the flights: each drift component is at least as
 /// large as the mean of the two before it. One or two flights that do not show the slowest components do not
 /// exclude them.
-NoiseModel with_slower_noise(NoiseModel noise);
+NoiseModel extrapolate_drift(NoiseModel noise);
 
 /// The columns in units of the noise and without its memory: `Whitening` of one flight.
 Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,

@@ -48,10 +48,10 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   order_ = coefficients_.size();
   std::vector<double> slow_time;
   std::vector<double> slow_variance;
-  for (std::size_t j = 0; j < slow_times.size(); ++j) {
-    if (!(noise.slow[j] > 0.0)) continue;
-    slow_time.push_back(slow_times[j]);
-    slow_variance.push_back(noise.slow[j] * noise.slow[j]);
+  for (std::size_t j = 0; j < drift_time_constants.size(); ++j) {
+    if (!(noise.drift_component_rms[j] > 0.0)) continue;
+    slow_time.push_back(drift_time_constants[j]);
+    slow_variance.push_back(noise.drift_component_rms[j] * noise.drift_component_rms[j]);
   }
   const std::size_t slow = slow_time.size();
   slow_variance_ = Eigen::Map<const Eigen::VectorXd>(slow_variance.data(), as_index(slow));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <new>
 
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 
 namespace pcor {
 
@@ -47,7 +47,7 @@ std::vector<Communicator::Message> Communicator::talk(const Message& own) {
   if (has_parted_)
     throw parted_with_ ? *parted_with_ : Error(Error::Code::system, "another process of this run has ended");
   std::vector<Message> all;
-  for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
+  for (const std::string& bytes : exchange(serialized(own))) all.push_back(deserialized<Message>(bytes));
   has_parted_ = std::any_of(all.begin(), all.end(), [](const Message& each) { return each.is_last; });
   if (const Message* const error = Message::first_error(all)) {
     const Error agreed(error->code, error->text);
@@ -68,7 +68,7 @@ std::vector<Communicator::Message> Communicator::talk(const Message& own) {
   return all;
 }
 
-std::vector<std::string> Communicator::gather(const std::string& own, std::uint64_t state) {
+std::vector<std::string> Communicator::all_gather(const std::string& own, std::uint64_t state) {
   if (size() == 1) return {own};
   Message message;
   message.state = state;
@@ -83,7 +83,7 @@ void Communicator::fail(const Error& error, std::size_t order) {
   throw error;
 }
 
-std::optional<Error> Communicator::leave(const std::optional<Error>& error) {
+std::optional<Error> Communicator::finalize(const std::optional<Error>& error) {
   if (size() == 1) return error;
   if (has_parted_) return parted_with_ ? parted_with_ : error;
   Message last = error ? Message::of(*error, 0) : Message{};

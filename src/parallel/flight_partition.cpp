@@ -37,16 +37,16 @@ FlightPartition::FlightPartition(Communicator& comm, const std::vector<std::uint
 }
 
 FlightPartition FlightPartition::of_entries(const std::vector<std::size_t>& flight_of_each) const {
-  FlightPartition share = *this;
-  share.owner_.clear();
-  for (const std::size_t flight : flight_of_each) share.owner_.push_back(owner_[flight]);
-  return share;
+  FlightPartition partition = *this;
+  partition.owner_.clear();
+  for (const std::size_t flight : flight_of_each) partition.owner_.push_back(owner_[flight]);
+  return partition;
 }
 
 FlightPartition FlightPartition::with(const FlightPartition& more) const {
-  FlightPartition share = *this;
-  share.owner_.insert(share.owner_.end(), more.owner_.begin(), more.owner_.end());
-  return share;
+  FlightPartition partition = *this;
+  partition.owner_.insert(partition.owner_.end(), more.owner_.begin(), more.owner_.end());
+  return partition;
 }
 
 FlightPartition FlightPartition::part(std::size_t first, std::size_t count) const {
@@ -83,7 +83,6 @@ void FlightPartition::visit(std::size_t threads,
       while (!working.empty()) finish_first();  // an earlier flight fails first
       throw;
     }
-    if (!work) continue;
     if (working.size() == threads) finish_first();
     working.emplace_back(flight, std::async(policy, std::move(work)));
     if (threads == 1) finish_first();
@@ -91,14 +90,14 @@ void FlightPartition::visit(std::size_t threads,
   while (!working.empty()) finish_first();
 }
 
-void FlightPartition::gather(const std::function<std::string(std::size_t)>& packed, std::uint64_t state,
-                             const std::function<void(std::size_t, internal::Unpacking&)>& take) const {
+void FlightPartition::gather(const std::function<std::string(std::size_t)>& bytes_of, std::uint64_t state,
+                             const std::function<void(std::size_t, internal::Deserializer&)>& take) const {
   std::string bytes;
   for (std::size_t flight = 0; flight < flights(); ++flight) {
-    if (is_local(flight)) bytes += packed(flight);
+    if (is_local(flight)) bytes += bytes_of(flight);
   }
-  const std::vector<std::string> all = comm_->gather(bytes, state);
-  std::deque<internal::Unpacking> ranks(all.begin(), all.end());
+  const std::vector<std::string> all = comm_->all_gather(bytes, state);
+  std::deque<internal::Deserializer> ranks(all.begin(), all.end());
   for (std::size_t flight = 0; flight < flights(); ++flight) take(flight, ranks[owner_[flight]]);
 }
 
@@ -114,7 +113,7 @@ FlightPartition partition_flights(Communicator& comm, const std::vector<std::fil
     sizes.push_back(unknown ? 0 : size);
   }
   if (comm.size() > 1)
-    sizes = unpacked<std::vector<std::uint64_t>>(comm.gather(packed(sizes), names).front());
+    sizes = deserialized<std::vector<std::uint64_t>>(comm.all_gather(serialized(sizes), names).front());
   return {comm, sizes};
 }
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "parallel/digest.hpp"
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 #include "parallel/workers.hpp"
 
 namespace pcor {
@@ -54,7 +54,7 @@ class FlightPartition {
   /// Threads of this rank for work on its flights.
   std::size_t threads() const { return internal::Workers(*comm_, 0).threads; }
 
-  /// The share of a list whose entries are each of one of these flights, as is a flight against one of
+  /// The partition of a list whose entries are each of one of these flights, as is a flight against one of
   /// several references: an entry is of the owner of its flight.
   FlightPartition of_entries(const std::vector<std::size_t>& flight_of_each) const;
 
@@ -70,37 +70,38 @@ class FlightPartition {
   /// @param state on which the ranks must agree
   /// @throws Error of the first flight that failed, on any rank
   template <class Part>
-  std::vector<Part> gather_flights(const std::function<void(std::vector<Part>&)>& visit,
-                                   std::uint64_t state = 0) const {
+  std::vector<Part> all_gather_parts(const std::function<void(std::vector<Part>&)>& visit,
+                                     std::uint64_t state = 0) const {
     std::vector<Part> parts(flights());
     attempt([&] { visit(parts); });
     if (comm_->size() > 1)
       gather(
           [&parts](std::size_t flight) {
             const Part own = std::move(parts[flight]);
-            return internal::packed(own);
+            return internal::serialized(own);
           },
           internal::digest_of(typeid(Part).name(), state + flights()),
-          [&parts](std::size_t flight, internal::Unpacking& rank) { parts[flight] = rank.next<Part>(); });
+          [&parts](std::size_t flight, internal::Deserializer& rank) { parts[flight] = rank.next<Part>(); });
     return parts;
   }
 
   /// Visits the flights of this rank in threads.
-  /// @param prepare returns the work on a flight, or an empty function for none; it is called in this thread,
-  /// in the order of the flights, and its works by up to `threads` threads
+  /// @param prepare returns the work on a flight; it is called in this thread, in the order of the flights,
+  /// and up to `threads` threads do the work
   /// @throws FlightError of the first flight that failed
   void visit(std::size_t threads,
              const std::function<std::function<void()>(std::size_t flight)>& prepare) const;
 
-  /// Like `of_each_flight`, from the content of each flight. @param read returns the content of a flight; it
-  /// is called in this thread, in the order of the flights
-  /// @param make returns the part of a flight from its number and content
+  /// Like `all_gather_flights`, from the content of each flight. @param read returns the content of a flight;
+  /// it is called in this thread, in the order of the flights
+  /// @param make returns the part of a flight from its number and content; up to `threads` threads call it
   template <class Part, class Read, class Make>
   std::vector<Part> map(std::size_t threads, const Read& read, const Make& make) const {
-    return gather_flights<Part>([&](std::vector<Part>& parts) {
+    return all_gather_parts<Part>([&](std::vector<Part>& parts) {
       visit(threads, [&](std::size_t flight) {
         return [&, flight, input = std::make_shared<decltype(read(flight))>(read(flight))] {
-          parts[flight] = make(flight, std::move(*input));
+          auto content = std::move(*input);  // freed with the work, before the part is gathered
+          parts[flight] = make(flight, std::move(content));
         };
       });
     });
@@ -109,9 +110,10 @@ class FlightPartition {
   /// Gathers parts of flights. @param make returns the part of a flight; it is called by up to `threads`
   /// threads
   template <class Part, class Make>
-  std::vector<Part> of_each_flight(const Make& make, std::uint64_t state = 0, std::size_t threads = 1) const {
+  std::vector<Part> all_gather_flights(const Make& make, std::uint64_t state = 0,
+                                       std::size_t threads = 1) const {
     static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
-    return gather_flights<Part>(
+    return all_gather_parts<Part>(
         [&](std::vector<Part>& parts) {
           visit(threads, [&](std::size_t flight) { return [&, flight] { parts[flight] = make(flight); }; });
         },
@@ -122,7 +124,7 @@ class FlightPartition {
   /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=; it
   /// is called by up to `threads` threads, a number that is equal on all ranks
   template <class Part, class Make>
-  Part sum_of_each_flight(const Make& make, std::size_t threads = 1) const {
+  Part all_reduce_flights(const Make& make, std::size_t threads = 1) const {
     // Few enough to be kept in memory, enough that ranks with unequal work rarely wait.
     constexpr std::size_t of_each = 4, enough = 64;
     const std::size_t workers = comm_->size() * threads;
@@ -130,7 +132,7 @@ class FlightPartition {
     Part sum{};
     for (std::size_t first = 0; first < flights(); first += at_a_time) {
       const FlightPartition some = part(first, std::min(at_a_time, flights() - first));
-      auto parts = some.of_each_flight<Part>([&](std::size_t k) { return make(first + k); }, 0, threads);
+      auto parts = some.all_gather_flights<Part>([&](std::size_t k) { return make(first + k); }, 0, threads);
       for (Part& each : parts) {
         if (first == 0 && &each == &parts.front())
           sum = std::move(each);
@@ -142,10 +144,10 @@ class FlightPartition {
   }
 
  private:
-  /// @param packed returns the bytes of a flight of this rank
+  /// @param bytes_of returns the bytes of a flight of this rank
   /// @param take gets the bytes of each flight, in their order: it reads the part of the flight
-  void gather(const std::function<std::string(std::size_t)>& packed, std::uint64_t state,
-              const std::function<void(std::size_t, internal::Unpacking&)>& take) const;
+  void gather(const std::function<std::string(std::size_t)>& bytes_of, std::uint64_t state,
+              const std::function<void(std::size_t, internal::Deserializer&)>& take) const;
 
   Communicator* comm_;
   std::vector<std::size_t> owner_;

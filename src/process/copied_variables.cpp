@@ -34,28 +34,28 @@ void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDe
     const std::string named = first_series(flight, usual);
     return named.empty() ? series_that_is(flight, standard_name) : named;
   };
-  const VariableNaming& family = family_of(model, flight);
+  const VariableNaming& naming = naming_of(model, flight);
   description.latitude = coordinate("latitude_coordinate", model.variable_of(Quantity::latitude),
-                                    usual_variables(family, Quantity::latitude), "latitude");
-  description.longitude = coordinate("longitude_coordinate", "", family.names_of("longitude"), "longitude");
+                                    usual_variables(naming, Quantity::latitude), "latitude");
+  description.longitude = coordinate("longitude_coordinate", "", naming.names_of("longitude"), "longitude");
   description.altitude = coordinate("zaxis_coordinate", model.variable_of(Quantity::altitude),
-                                    usual_heights(family), "altitude");
+                                    usual_heights(naming), "altitude");
   if (description.altitude.rfind("PALT", 0) == 0) description.altitude_standard_name = "barometric_altitude";
 }
 
 std::string series_name(const Flight& flight, const ModelDefinition& model, Quantity role) {
-  const VariableNaming& family = family_of(model, flight);
-  Names names = role == Quantity::altitude ? usual_heights(family) : usual_variables(family, role);
+  const VariableNaming& naming = naming_of(model, flight);
+  Names names = role == Quantity::altitude ? usual_heights(naming) : usual_variables(naming, role);
   names.insert(names.begin(), model.variable_of(role));
   return first_series(flight, names);
 }
 
-Names flown_variables(const Flight& flight, const ModelDefinition& model) {
+Names motion_variables(const Flight& flight, const ModelDefinition& model) {
   Names flown;
-  for (const Quantity role : flown_quantities) flown.push_back(series_name(flight, model, role));
-  const VariableNaming& family = family_of(model, flight);
+  for (const Quantity role : motion_quantities) flown.push_back(series_name(flight, model, role));
+  const VariableNaming& naming = naming_of(model, flight);
   for (const char* velocity : {"ground_speed_east", "ground_speed_north"})
-    flown.push_back(first_series(flight, family.names_of(velocity)));
+    flown.push_back(first_series(flight, naming.names_of(velocity)));
   return flown;
 }
 

@@ -14,6 +14,6 @@ void name_coordinates(const Flight& flight, const ModelDefinition& model, FileDe
 std::string series_name(const Flight& flight, const ModelDefinition& model, Quantity role);
 
 /// Available inputs of a temperature fit other than those of the model: height, position and motion.
-Names flown_variables(const Flight& flight, const ModelDefinition& model);
+Names motion_variables(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -20,8 +20,8 @@ namespace {
 std::string add_spans(const Flight& flight, const std::string& reason, const std::vector<bool>& records,
                       std::size_t max_gap, ProcessSummary& summary) {
   const std::vector<double> time = record_times(flight);
-  const std::vector<Run> runs = marked_runs(records, max_gap);
-  for (const Run& run : runs)
+  const std::vector<IndexRange> runs = marked_runs(records, max_gap);
+  for (const IndexRange& run : runs)
     summary.outside.push_back({reason, time[run.first], time[run.end - 1] + flight.time().step});
   return times_of(runs, time);
 }

@@ -62,8 +62,8 @@ class Processing {
     summary_.flight = flight_.flight_number();
     summary_.records = flight_.records();
     summary_.gaps = flight_.time().gap_count;
-    summary_.first_time = flight_.time().first;
-    summary_.last_time = flight_.time().last;
+    summary_.start_time = flight_.time().first;
+    summary_.end_time = flight_.time().last;
 
     choose_roles();
     for (Note& each : flight_.file().notes()) summary_.notes.push_back(std::move(each));
@@ -144,8 +144,8 @@ class Processing {
     for (const Quantity role : roles_) {
       if (chain_->needs(role) || is_always_read(role)) names.insert(file_.variables.at(role));
     }
-    const VariableNaming& family = family_of(file_, flight_);
-    for (const auto* pairs : {&family.measured, &family.processed}) {
+    const VariableNaming& naming = naming_of(file_, flight_);
+    for (const auto* pairs : {&naming.measured, &naming.processed}) {
       for (const PressurePair& pair : *pairs) names.insert({pair.static_pressure, pair.dynamic_pressure});
     }
     for (const Quantity role : {Quantity::altitude, Quantity::flaps, Quantity::recovery_temperature,
@@ -260,7 +260,7 @@ class Processing {
   void note_archive() {
     const std::string& static_pressure = file_.variables.at(Quantity::static_pressure);
     const std::string& dynamic_pressure = file_.variables.at(Quantity::dynamic_pressure);
-    const std::vector<PressurePair>& processed = family_of(file_, flight_).processed;
+    const std::vector<PressurePair>& processed = naming_of(file_, flight_).processed;
     const bool is_corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
       return pair.static_pressure == static_pressure && pair.dynamic_pressure == dynamic_pressure;
     });
@@ -297,7 +297,7 @@ class Processing {
     Names names{description.latitude, description.longitude, description.altitude};
     for (const LoopInput& input : inputs_) names.push_back(input.variable);
     if (options_.hydrostatic) {
-      for (const std::string& name : flown_variables(flight_, file_)) names.push_back(name);
+      for (const std::string& name : motion_variables(flight_, file_)) names.push_back(name);
     }
     if (options_.copy_all) names = flight_.variables();
     for (const std::string& name : names) {
@@ -449,8 +449,8 @@ class Processing {
     std::vector<double> times(samples);
     flight_.read_sample_times(block, summary_.rate, times.data());
     for (std::size_t i = 0; i < samples; ++i) {
-      const double time = times[i] - summary_.first_time;
-      if (loop_->starts_anew(time)) flush();
+      const double time = times[i] - summary_.start_time;
+      if (loop_->is_discontinuity(time)) flush();
       State<double>& state = loop_->state();
       const std::size_t record = block.first + i / static_cast<std::size_t>(summary_.rate);
       for (const LoopInput& input : inputs_) {

@@ -45,7 +45,7 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
                                              const ProcessFlightsOptions& options) {
   std::vector<ProcessedFlight> flights;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    if (options.begins) options.begins(i);
+    if (options.on_flight_start) options.on_flight_start(i);
     ProcessedFlight& flight = flights.emplace_back();
     flight.input = tasks[i].input;
     flight.output = tasks[i].output;
@@ -64,7 +64,7 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
       flight.state = FlightState::unreadable;
       flight.reason = error.what();
     }
-    if (options.ends) options.ends(flight);
+    if (options.on_flight_end) options.on_flight_end(flight);
   }
   return flights;
 }

@@ -36,11 +36,11 @@ constexpr const char* own_difference = "own_difference";
 
 /// Static pressure corrected in the flight file, hPa; empty if absent.
 RecordedSeries own_static_pressure(const Flight& input) {
-  const VariableNaming& family = family_of(input);
-  RecordedSeries own{processed_static_pressure(input, family)};
+  const VariableNaming& naming = naming_of(input);
+  RecordedSeries own{processed_static_pressure(input, naming)};
   if (own.variable.empty()) return own;
   own.values = read_values(input, own.variable,
-                           input.conversion(own.variable, "hPa", "", family.unit_of(own.variable)))
+                           input.conversion(own.variable, "hPa", "", naming.unit_of(own.variable)))
                    .values;
   return own;
 }

@@ -99,7 +99,7 @@ std::vector<double> rate_of_change(const std::vector<double>& values, const std:
   return rate;
 }
 
-std::vector<double> coordinated_roll(const Cells& cells) {
+std::vector<double> coordinated_roll(const OneHertzCells& cells) {
   constexpr std::size_t smoothing = 3;
   constexpr double radians = constants::radians_per_degree;
   std::vector<double> roll = running_mean(rate_of_change(cells.heading, cells.begin), smoothing);
@@ -116,9 +116,9 @@ const std::vector<double>& first_known(const std::vector<double>& preferred,
 
 }  // namespace
 
-Cells cells_of(const FlightMotion& motion) {
+OneHertzCells cells_of(const FlightMotion& motion) {
   const Division division = divide(motion.time);
-  Cells cells;
+  OneHertzCells cells;
   cells.begin = division.begin;
   cells.airspeed = means(first_known(motion.airspeed, motion.ground_speed), division, "the airspeed");
   cells.altitude = means(motion.altitude, division, "the altitude");

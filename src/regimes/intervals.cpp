@@ -15,10 +15,10 @@ namespace {
 constexpr double day = 86400.0;  // s
 
 // Moment with that time of day in the flight or nearest to it.
-double nearest_moment(double time_of_day, double first_time, double last_time) {
-  const auto distance = [&](double time) { return std::max({first_time - time, time - last_time, 0.0}); };
-  double moment = midnight_before(first_time) - day + time_of_day;
-  for (double next = moment + day; next - day <= last_time; next += day) {
+double nearest_moment(double time_of_day, double start_time, double end_time) {
+  const auto distance = [&](double time) { return std::max({start_time - time, time - end_time, 0.0}); };
+  double moment = midnight_before(start_time) - day + time_of_day;
+  for (double next = moment + day; next - day <= end_time; next += day) {
     if (distance(next) < distance(moment)) moment = next;
   }
   return moment;
@@ -26,8 +26,8 @@ double nearest_moment(double time_of_day, double first_time, double last_time) {
 
 // Places times of the day on the day of the flight.
 template <class Span>
-void shift_day(Span& span, double first_time, double last_time) {
-  if (span.begin < day) span.begin = nearest_moment(span.begin, first_time, last_time);
+void shift_day(Span& span, double start_time, double end_time) {
+  if (span.begin < day) span.begin = nearest_moment(span.begin, start_time, end_time);
   if (span.end < day) {
     span.end += midnight_before(span.begin);
     if (span.end <= span.begin) span.end += day;
@@ -67,21 +67,21 @@ bool UserIntervals::is_for(const std::filesystem::path& flight_file) const {
   return flight.empty() || flight_file.filename() == flight;
 }
 
-UserIntervals placed(const UserIntervals& user, double first_time, double last_time) {
+UserIntervals placed(const UserIntervals& user, double start_time, double end_time) {
   UserIntervals result = user;
-  for (Interval& interval : result.add) shift_day(interval, first_time, last_time);
-  for (Veto& veto : result.veto) shift_day(veto, first_time, last_time);
-  for (Exclusion& exclusion : result.exclude) shift_day(exclusion, first_time, last_time);
+  for (Interval& interval : result.add) shift_day(interval, start_time, end_time);
+  for (Veto& veto : result.veto) shift_day(veto, start_time, end_time);
+  for (Exclusion& exclusion : result.exclude) shift_day(exclusion, start_time, end_time);
   return result;
 }
 
-std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, double first_time,
-                                               double last_time) {
-  const UserIntervals moments = placed(intervals, first_time, last_time);
+std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, double start_time,
+                                               double end_time) {
+  const UserIntervals moments = placed(intervals, start_time, end_time);
   std::vector<OutsideInterval> outside;
   const auto find = [&](const char* kind, const auto& stated, const auto& list) {
     for (std::size_t i = 0; i < list.size(); ++i) {
-      if (list[i].end > first_time && list[i].begin <= last_time) continue;
+      if (list[i].end > start_time && list[i].begin <= end_time) continue;
       const bool is_one_day = midnight_before(list[i].begin) == midnight_before(list[i].end);
       outside.push_back({fmt::format("[[{}]] {} to {}", kind, utc_text(list[i].begin),
                                      utc_text(list[i].end, is_one_day ? "%H:%M:%S" : "%Y-%m-%d %H:%M:%S")),
@@ -94,22 +94,22 @@ std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, d
   return outside;
 }
 
-std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double first_time,
-                            double last_time) {
-  const UserIntervals moments = placed(user, first_time, last_time);
+std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double start_time,
+                            double end_time) {
+  const UserIntervals moments = placed(user, start_time, end_time);
   for (const Veto& veto : moments.veto) {
     remove(found, veto.begin, veto.end,
            [&](const Interval& interval) { return !veto.regime || interval.regime == *veto.regime; });
   }
   int pairs = 0;
-  double end_of_flight = std::nextafter(last_time, last_time + 1.0);
+  double end_of_flight = std::nextafter(end_time, end_time + 1.0);
   for (const Interval& interval : found) {
     pairs = std::max(pairs, interval.pair);
     end_of_flight = std::max(end_of_flight, interval.end);
   }
   std::vector<Interval> added;
   for (Interval interval : moments.add) {
-    interval.begin = std::max(interval.begin, first_time);
+    interval.begin = std::max(interval.begin, start_time);
     interval.end = std::min(interval.end, end_of_flight);
     if (!(interval.begin < interval.end)) continue;
     const auto replaced = [&](const Interval& other) {

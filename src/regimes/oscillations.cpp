@@ -48,7 +48,7 @@ std::vector<double> local_periodicity(const std::vector<double>& values, const B
 }
 
 // Autocorrelation of a run at the lag `lag`.
-double autocorrelation(const std::vector<double>& values, Run run, std::size_t lag) {
+double autocorrelation(const std::vector<double>& values, IndexRange run, std::size_t lag) {
   double covariance = 0.0, variance = 0.0;
   for (std::size_t i = run.first; i + lag < run.end; ++i) {
     const double pair = values[i] * values[i + lag];
@@ -66,7 +66,7 @@ double vertex(double left, double middle, double right) {
 }
 
 // First period with maximum autocorrelation of a run; 0 if the correlation is too low everywhere.
-double period_of(const std::vector<double>& values, Run run, const Band& band) {
+double period_of(const std::vector<double>& values, IndexRange run, const Band& band) {
   std::vector<double> correlation;
   for (std::size_t lag = band.min_period - 1; lag <= band.max_period + 1; ++lag) {
     correlation.push_back(autocorrelation(values, run, lag));
@@ -83,11 +83,12 @@ double period_of(const std::vector<double>& values, Run run, const Band& band) {
 
 // Run from the zero before the first swing of half the amplitude to the zero after the last one, extended by
 // at most one period.
-Run whole_swings(const std::vector<double>& values, Run run, double amplitude, std::size_t margin) {
+IndexRange whole_swings(const std::vector<double>& values, IndexRange run, double amplitude,
+                        std::size_t margin) {
   const std::size_t earliest = run.first - std::min(run.first, margin);
   const std::size_t latest = std::min(run.end + margin, values.size());
   const auto swings = [&](std::size_t i) { return std::abs(values[i]) >= amplitude / 2.0; };
-  Run whole{earliest, latest};
+  IndexRange whole{earliest, latest};
   while (whole.first < whole.end && !swings(whole.first)) ++whole.first;
   while (whole.end > whole.first && !swings(whole.end - 1)) --whole.end;
   if (whole.length() == 0) return run;
@@ -116,13 +117,13 @@ void add_oscillations(RegimeSearch& search, Regime regime, const std::vector<dou
   const std::vector<double> squares = product(angle, angle);
   const std::vector<double> variance = running_mean(squares, band.max_period);
   const std::vector<double> periodicity = local_periodicity(angle, band);
-  const std::vector<Run> strong = runs_where(angle.size(), [&](std::size_t i) {
+  const std::vector<IndexRange> strong = runs_where(angle.size(), [&](std::size_t i) {
     return usable[i] && !std::isnan(angle[i]) && variance[i] > band.variance &&
            periodicity[i] >= band.periodicity;
   });
-  for (const Run& run : bridged(strong, band.min_period)) {
+  for (const IndexRange& run : merge_gaps(strong, band.min_period)) {
     const double amplitude = std::sqrt(2.0 * mean(squares, run));
-    const Run whole = whole_swings(angle, run, amplitude, band.max_period);
+    const IndexRange whole = whole_swings(angle, run, amplitude, band.max_period);
     if (whole.length() < cells_in(band.time)) continue;
     const double period = period_of(angle, whole, band);
     if (!(period > 0.0) || !moves(whole) || mean(tilt, whole) > search.criteria.manoeuvre_roll) continue;
@@ -141,9 +142,9 @@ void find_pitch_manoeuvres(RegimeSearch& search) {
                   cells_in(criteria.pitch_longest_period), criteria.periodicity};
   const std::vector<double> vertical_speed = in_band(search.cells.vertical_speed, band);
   const std::vector<double> squares = product(vertical_speed, vertical_speed);
-  add_oscillations(search, Regime::pitch_manoeuvre, in_band(search.cells.pitch, band), about_level(search),
-                   band,
-                   [&](Run run) { return !(std::sqrt(mean(squares, run)) < criteria.pitch_vertical_speed); });
+  add_oscillations(
+      search, Regime::pitch_manoeuvre, in_band(search.cells.pitch, band), about_level(search), band,
+      [&](IndexRange run) { return !(std::sqrt(mean(squares, run)) < criteria.pitch_vertical_speed); });
 }
 
 void find_yaw_manoeuvres(RegimeSearch& search) {
@@ -161,7 +162,7 @@ void find_yaw_manoeuvres(RegimeSearch& search) {
   for (std::size_t i = 0; i < usable.size(); ++i) {
     if (heading_variance[i] < criteria.yaw_variance / 2.0) usable[i] = false;
   }
-  add_oscillations(search, Regime::yaw_manoeuvre, sideslip, usable, band, [&](Run run) {
+  add_oscillations(search, Regime::yaw_manoeuvre, sideslip, usable, band, [&](IndexRange run) {
     const double variances = mean(sideslip_squares, run) * mean(heading_squares, run);
     return !(std::abs(mean(products, run) / std::sqrt(variances)) < criteria.yaw_heading_correlation);
   });

@@ -15,12 +15,12 @@ constexpr std::size_t min_phase_side = 15;
 
 struct PhaseRun {
   Regime phase;
-  Run run;
+  IndexRange run;
 };
 
 // Airborne cells: faster than the flying speed. Unknown speeds take the last known value, or the next one
 // before the first.
-std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
+std::vector<bool> airborne(const OneHertzCells& cells, const RegimeCriteria& criteria) {
   std::vector<bool> flying(cells.count());
   const auto first_known = std::find_if(cells.airspeed.begin(), cells.airspeed.end(),
                                         [](double speed) { return !std::isnan(speed); });
@@ -30,7 +30,8 @@ std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
     flying[i] = fast;
   }
   for (const bool state : {true, false}) {
-    for (const Run& run : runs_where(flying.size(), [&](std::size_t i) { return flying[i] == state; })) {
+    for (const IndexRange& run :
+         runs_where(flying.size(), [&](std::size_t i) { return flying[i] == state; })) {
       const bool whole_record = run.length() == flying.size();
       if (run.length() >= min_flight || whole_record) continue;
       for (std::size_t i = run.first; i < run.end; ++i) flying[i] = !state;
@@ -40,14 +41,14 @@ std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
 }
 
 // Start of the roll that reached the flying speed at `fast`.
-std::size_t begin_of_roll(const Cells& cells, std::size_t fast, const RegimeCriteria& criteria) {
+std::size_t begin_of_roll(const OneHertzCells& cells, std::size_t fast, const RegimeCriteria& criteria) {
   const std::size_t earliest = fast - std::min(fast, cells_in(criteria.take_off_time));
   std::size_t begin = fast;
   while (begin > earliest && cells.airspeed[begin - 1] > criteria.roll_speed) --begin;
   return begin;
 }
 
-std::size_t end_of_take_off(const Cells& cells, Run flight, std::size_t roll,
+std::size_t end_of_take_off(const OneHertzCells& cells, IndexRange flight, std::size_t roll,
                             const RegimeCriteria& criteria) {
   const double field = mean(cells.altitude, {roll, flight.first});
   const std::size_t latest = std::min(flight.end, flight.first + cells_in(criteria.take_off_time));
@@ -63,7 +64,7 @@ Regime phase_at(double climb, const RegimeCriteria& criteria) {
 }
 
 // If the climb is unknown the previous phase continues; the initial phase is level.
-std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, Run flight,
+std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, IndexRange flight,
                                     const RegimeCriteria& criteria) {
   std::vector<PhaseRun> runs;
   Regime phase = Regime::level;
@@ -104,27 +105,27 @@ void join_short(std::vector<PhaseRun>& runs, const std::vector<double>& climb, s
 // too early or too late.
 void sharpen(std::vector<PhaseRun>& runs, const std::vector<double>& vertical_speed) {
   for (std::size_t i = 1; i < runs.size(); ++i) {
-    Run& before = runs[i - 1].run;
-    Run& after = runs[i].run;
+    IndexRange& before = runs[i - 1].run;
+    IndexRange& after = runs[i].run;
     const std::size_t boundary = after.first;
-    const Run around{boundary - std::min(boundary_reach, before.length() / 2),
-                     boundary + std::min(boundary_reach, after.length() / 2)};
+    const IndexRange around{boundary - std::min(boundary_reach, before.length() / 2),
+                            boundary + std::min(boundary_reach, after.length() / 2)};
     before.end = after.first = best_step(vertical_speed, around, min_phase_side, boundary);
   }
 }
 
 }  // namespace
 
-std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria) {
+std::vector<Regime> phases_of(const OneHertzCells& cells, const RegimeCriteria& criteria) {
   std::vector<Regime> phases(cells.count(), Regime::count);
   if (!has_value(cells.airspeed)) return phases;
   const std::vector<bool> flying = airborne(cells, criteria);
   std::fill(phases.begin(), phases.end(), Regime::ground);
-  const auto put = [&](Run run, Regime phase) {
+  const auto put = [&](IndexRange run, Regime phase) {
     for (std::size_t i = run.first; i < run.end; ++i) phases[i] = phase;
   };
-  for (const Run& flight : runs_where(flying.size(), [&](std::size_t i) { return flying[i]; })) {
-    Run rest = flight;
+  for (const IndexRange& flight : runs_where(flying.size(), [&](std::size_t i) { return flying[i]; })) {
+    IndexRange rest = flight;
     if (flight.first > 0) {
       const std::size_t roll = begin_of_roll(cells, flight.first, criteria);
       rest.first = end_of_take_off(cells, flight, roll, criteria);

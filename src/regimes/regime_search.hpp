@@ -14,7 +14,7 @@ namespace pcor::internal {
 /// Motion of a flight as means over cells of one second, for any sampling rate. Every series has one value
 /// for each cell, NaN if missing; gaps up to 5 s are interpolated. A gap in the time is kept as cells without
 /// values, up to 300 of them, so that memory does not grow with gaps.
-struct Cells {
+struct OneHertzCells {
   std::vector<double> begin;  ///< start time of each cell, s since 1970 UTC, followed by the end time of the
                               ///< last one
   std::vector<double> airspeed;
@@ -31,21 +31,21 @@ struct Cells {
 };
 
 /// @throws Error as does `find_regimes`
-Cells cells_of(const FlightMotion& motion);
+OneHertzCells cells_of(const FlightMotion& motion);
 
 /// Search for the regimes of a flight.
 struct RegimeSearch {
-  Cells cells;
+  OneHertzCells cells;
   RegimeCriteria criteria;
   std::vector<bool> flying;       ///< cells that are searched for manoeuvres: airborne, or with unknown phase
   std::vector<bool> unassigned;   ///< flying cells outside the regimes that were found before
   std::vector<Interval> found{};  ///< regimes in the order of their detection
 
-  void add(Regime regime, Run run, const std::string& note = "", int pair = 0);
+  void add(Regime regime, IndexRange run, const std::string& note = "", int pair = 0);
 };
 
 /// Phase of each cell; `Regime::count` if unknown.
-std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria);
+std::vector<Regime> phases_of(const OneHertzCells& cells, const RegimeCriteria& criteria);
 
 void find_turns(RegimeSearch& search);
 void find_circles(RegimeSearch& search);

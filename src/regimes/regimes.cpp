@@ -12,15 +12,16 @@ using namespace internal;
 namespace {
 
 void find_clouds(RegimeSearch& search) {
-  const std::vector<Run> wet = runs_where(search.cells.count(), [&](std::size_t i) {
+  const std::vector<IndexRange> wet = runs_where(search.cells.count(), [&](std::size_t i) {
     return search.flying[i] && search.cells.liquid_water[i] >= search.criteria.cloud_liquid_water;
   });
-  for (const Run& run : bridged(wet, cells_in(search.criteria.bridged))) search.add(Regime::cloud, run);
+  for (const IndexRange& run : merge_gaps(wet, cells_in(search.criteria.bridged)))
+    search.add(Regime::cloud, run);
 }
 
 }  // namespace
 
-void RegimeSearch::add(Regime regime, Run run, const std::string& note, int pair) {
+void RegimeSearch::add(Regime regime, IndexRange run, const std::string& note, int pair) {
   found.push_back({regime, cells.begin[run.first], cells.begin[run.end], pair, note});
   for (std::size_t i = run.first; i < run.end; ++i) unassigned[i] = false;
 }
@@ -32,7 +33,7 @@ Regime regime_named(std::string_view name) {
 }
 
 std::vector<Interval> find_regimes(const FlightMotion& motion, const RegimeCriteria& criteria) {
-  const Cells cells = cells_of(motion);
+  const OneHertzCells cells = cells_of(motion);
   const std::vector<Regime> phases = phases_of(cells, criteria);
   std::vector<bool> flying;
   for (const Regime phase : phases) flying.push_back(phase != Regime::ground && phase != Regime::take_off);

@@ -51,13 +51,13 @@ std::vector<double> unwrapped(std::vector<double> angles) {
   return angles;
 }
 
-double mean(const std::vector<double>& values, Run run) {
+double mean(const std::vector<double>& values, IndexRange run) {
   Sum sum;
   for (std::size_t i = run.first; i < run.end; ++i) sum.add(values[i]);
   return sum.mean();
 }
 
-Extent extent(const std::vector<double>& values, Run run) {
+Extent extent(const std::vector<double>& values, IndexRange run) {
   Extent extent{nan, nan};
   for (std::size_t i = run.first; i < run.end; ++i) {
     extent.minimum = std::fmin(extent.minimum, values[i]);
@@ -66,7 +66,7 @@ Extent extent(const std::vector<double>& values, Run run) {
   return extent;
 }
 
-std::size_t best_step(const std::vector<double>& values, Run run, std::size_t shortest,
+std::size_t best_step(const std::vector<double>& values, IndexRange run, std::size_t shortest,
                       std::size_t otherwise) {
   const auto minimum = static_cast<double>(shortest);
   Sum all, left;
@@ -87,10 +87,10 @@ std::size_t best_step(const std::vector<double>& values, Run run, std::size_t sh
   return best;
 }
 
-std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap,
-                         const std::function<bool(Run)>& may_join) {
-  std::vector<Run> longer;
-  for (const Run& run : runs) {
+std::vector<IndexRange> merge_gaps(const std::vector<IndexRange>& runs, std::size_t gap,
+                                   const std::function<bool(IndexRange)>& may_join) {
+  std::vector<IndexRange> longer;
+  for (const IndexRange& run : runs) {
     const bool near = !longer.empty() && run.first <= longer.back().end + gap;
     if (near && may_join({longer.back().first, run.end}))
       longer.back().end = run.end;
@@ -100,9 +100,10 @@ std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap,
   return longer;
 }
 
-std::vector<Run> not_shorter(std::vector<Run> runs, std::size_t length) {
-  runs.erase(std::remove_if(runs.begin(), runs.end(), [&](const Run& run) { return run.length() < length; }),
-             runs.end());
+std::vector<IndexRange> drop_short(std::vector<IndexRange> runs, std::size_t length) {
+  runs.erase(
+      std::remove_if(runs.begin(), runs.end(), [&](const IndexRange& run) { return run.length() < length; }),
+      runs.end());
   return runs;
 }
 

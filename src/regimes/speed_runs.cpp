@@ -12,11 +12,12 @@ constexpr std::size_t smoothing = 10;  // s
 constexpr std::size_t min_side = 10;   // s of known acceleration on each side of an end
 
 // Run whose ends are the start and the end of the acceleration.
-Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCriteria& criteria) {
-  const std::size_t reach = 2 * cells_in(criteria.branch_time);
-  const std::size_t inside = std::min(reach, run.length() / 2);
-  const Run at_first{run.first - std::min(run.first, reach), run.first + inside};
-  const Run at_end{run.end - inside, std::min(run.end + reach, acceleration.size())};
+IndexRange sharpened(IndexRange run, const std::vector<double>& acceleration,
+                     const RegimeCriteria& criteria) {
+  const std::size_t margin = 2 * cells_in(criteria.branch_time);
+  const std::size_t inside = std::min(margin, run.length() / 2);
+  const IndexRange at_first{run.first - std::min(run.first, margin), run.first + inside};
+  const IndexRange at_end{run.end - inside, std::min(run.end + margin, acceleration.size())};
   return {best_step(acceleration, at_first, min_side, run.first),
           best_step(acceleration, at_end, min_side, run.end)};
 }
@@ -24,7 +25,7 @@ Run sharpened(Run run, const std::vector<double>& acceleration, const RegimeCrit
 }  // namespace
 
 void find_speed_runs(RegimeSearch& search) {
-  const Cells& cells = search.cells;
+  const OneHertzCells& cells = search.cells;
   const RegimeCriteria& criteria = search.criteria;
   const std::vector<bool>& flying = search.flying;
   const std::vector<double> airspeed = running_mean(cells.airspeed, smoothing);
@@ -33,7 +34,7 @@ void find_speed_runs(RegimeSearch& search) {
   for (std::size_t i = 0; i + 1 < cells.count(); ++i) {
     if (flying[i] && flying[i + 1]) acceleration[i] = airspeed[i + 1] - airspeed[i];
   }
-  const auto at_one_height = [&](Run run) {
+  const auto at_one_height = [&](IndexRange run) {
     return !(extent(altitude, run).range() > 2.0 * criteria.speed_run_height);
   };
   // Segments in which the airspeed changes enough, and the height little, over `time` seconds around a cell.
@@ -48,15 +49,15 @@ void find_speed_runs(RegimeSearch& search) {
              !(climbed > criteria.speed_run_height);
     });
   };
-  const std::vector<Run> sustained = branches(criteria.acceleration_time);
-  const std::vector<Run> all =
-      not_shorter(branches(criteria.branch_time), cells_in(criteria.branch_time / 2.0));
-  for (const Run& run : bridged(all, cells_in(criteria.speed_run_pause), at_one_height)) {
-    const bool is_sustained = std::any_of(sustained.begin(), sustained.end(), [&](const Run& other) {
+  const std::vector<IndexRange> sustained = branches(criteria.acceleration_time);
+  const std::vector<IndexRange> all =
+      drop_short(branches(criteria.branch_time), cells_in(criteria.branch_time / 2.0));
+  for (const IndexRange& run : merge_gaps(all, cells_in(criteria.speed_run_pause), at_one_height)) {
+    const bool is_sustained = std::any_of(sustained.begin(), sustained.end(), [&](const IndexRange& other) {
       return run.first < other.end && other.first < run.end;
     });
     if (!is_sustained) continue;
-    const Run whole = sharpened(run, acceleration, criteria);
+    const IndexRange whole = sharpened(run, acceleration, criteria);
     const Extent speeds = extent(airspeed, whole);
     if (!(speeds.range() >= criteria.speed_range) || !at_one_height(whole)) continue;
     search.add(Regime::speed_run, whole, fmt::format("{:.0f} to {:.0f} m/s", speeds.minimum, speeds.maximum));

@@ -12,12 +12,12 @@ constexpr std::size_t roll_smoothing = 3;       // s: turbulence moves the wings
 constexpr std::size_t straight_smoothing = 10;  // s
 
 struct Turn {
-  Run run;
+  IndexRange run;
   const char* side;
   double change;  // turn of the heading from the first known value to the last, deg, positive to that side
 };
 
-double heading_change(const Cells& cells, Run run) {
+double heading_change(const OneHertzCells& cells, IndexRange run) {
   std::size_t first = run.first, last = run.end - 1;
   while (first < last && std::isnan(cells.heading[first])) ++first;
   while (last > first && std::isnan(cells.heading[last])) --last;
@@ -29,16 +29,16 @@ std::vector<Turn> turns_beyond(double minimum, const RegimeSearch& search) {
   const std::vector<double> roll = running_mean(search.cells.roll, roll_smoothing);
   std::vector<Turn> turns;
   for (const double sign : {-1.0, 1.0}) {
-    const std::vector<Run> banked =
+    const std::vector<IndexRange> banked =
         runs_where(roll.size(), [&](std::size_t i) { return search.flying[i] && sign * roll[i] > minimum; });
-    const std::vector<Run> bridged_runs = bridged(banked, cells_in(search.criteria.bridged));
-    for (const Run& run : not_shorter(bridged_runs, cells_in(search.criteria.turn_time)))
+    const std::vector<IndexRange> bridged_runs = merge_gaps(banked, cells_in(search.criteria.bridged));
+    for (const IndexRange& run : drop_short(bridged_runs, cells_in(search.criteria.turn_time)))
       turns.push_back({run, sign > 0.0 ? "right" : "left", sign * heading_change(search.cells, run)});
   }
   return turns;
 }
 
-double standard_deviation(const std::vector<double>& values, Run run) {
+double standard_deviation(const std::vector<double>& values, IndexRange run) {
   const double middle = mean(values, run);
   std::vector<double> squares(values.data() + run.first, values.data() + run.end);
   for (double& each : squares) each = (each - middle) * (each - middle);
@@ -66,23 +66,24 @@ void find_circles(RegimeSearch& search) {
 }
 
 void find_reverse_headings(RegimeSearch& search) {
-  const Cells& cells = search.cells;
+  const OneHertzCells& cells = search.cells;
   const RegimeCriteria& criteria = search.criteria;
   const std::vector<double> roll = running_mean(cells.roll, straight_smoothing);
   const std::vector<double> altitude = running_mean(cells.altitude, straight_smoothing);
   const std::size_t shortest = cells_in(criteria.leg_shortest), longest = cells_in(criteria.leg_longest);
-  const std::vector<Run> steady = runs_where(cells.count(), [&](std::size_t i) {
+  const std::vector<IndexRange> steady = runs_where(cells.count(), [&](std::size_t i) {
     return search.unassigned[i] && std::abs(roll[i]) < criteria.leg_roll && !std::isnan(cells.heading[i]) &&
            !std::isnan(altitude[i]);
   });
-  const std::vector<Run> straight = not_shorter(bridged(steady, cells_in(criteria.bridged)), shortest);
+  const std::vector<IndexRange> straight =
+      drop_short(merge_gaps(steady, cells_in(criteria.bridged)), shortest);
   int pairs = 0;
   for (std::size_t i = 1; i < straight.size(); ++i) {
-    const Run first = straight[i - 1], second = straight[i];
+    const IndexRange first = straight[i - 1], second = straight[i];
     if (second.first - first.end > cells_in(criteria.turn_longest)) continue;
     // The legs are estimated from the shortest ones, next to the reversal.
-    Run out{first.end - shortest, first.end};
-    Run back{second.first, second.first + shortest};
+    IndexRange out{first.end - shortest, first.end};
+    IndexRange back{second.first, second.first + shortest};
     const double heading_out = mean(cells.heading, out), heading_back = mean(cells.heading, back);
     const double change = std::abs(std::remainder(heading_back - heading_out, 360.0));
     if (!(180.0 - change <= criteria.leg_heading)) continue;
@@ -90,7 +91,7 @@ void find_reverse_headings(RegimeSearch& search) {
     const auto keeps_height = [&](double height) {
       return std::abs(height - middle) <= criteria.leg_height_range / 2.0;
     };
-    const auto all_keep = [&](Run run) {
+    const auto all_keep = [&](IndexRange run) {
       return std::all_of(altitude.data() + run.first, altitude.data() + run.end, keeps_height);
     };
     if (!all_keep(out) || !all_keep(back)) continue;
@@ -102,7 +103,7 @@ void find_reverse_headings(RegimeSearch& search) {
       --out.first;
     while (back.end < second.end && back.length() < longest && keeps(back.end, heading_back)) ++back.end;
     ++pairs;
-    for (const Run& leg : {out, back})
+    for (const IndexRange& leg : {out, back})
       search.add(Regime::reverse_heading, leg, fmt::format("headings {:.0f} deg apart", change), pairs);
   }
 }

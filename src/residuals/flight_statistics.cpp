@@ -57,7 +57,8 @@ double variance_of_sum(const std::vector<double>& values) {
 
 }  // namespace
 
-std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples) {
+std::vector<double> select_samples(const std::vector<double>& values,
+                                   const std::vector<std::size_t>& samples) {
   std::vector<double> result(values.size(), nan);
   for (const std::size_t i : samples) result[i] = values[i];
   return result;

@@ -36,7 +36,8 @@ struct ResidualSums {
 };
 
 /// Values at some of the samples, NaN at all others.
-std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples);
+std::vector<double> select_samples(const std::vector<double>& values,
+                                   const std::vector<std::size_t>& samples);
 
 /// Values at the samples with one mask, NaN at all others.
 std::vector<double> masked(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask);

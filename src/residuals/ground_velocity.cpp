@@ -18,9 +18,9 @@ GroundVelocity read_as_recorded(const Flight& flight, const ModelDefinition& mod
   GroundVelocity velocity{read_role(flight, model, Quantity::ground_speed),
                           read_role(flight, model, Quantity::ground_track)};
   if (!velocity.speed.values.empty() && !velocity.track.values.empty()) return velocity;
-  const VariableNaming& family = family_of(model, flight);
-  const RecordedSeries east = read_usual(flight, family, "ground_speed_east");
-  const RecordedSeries north = read_usual(flight, family, "ground_speed_north");
+  const VariableNaming& naming = naming_of(model, flight);
+  const RecordedSeries east = read_usual(flight, naming, "ground_speed_east");
+  const RecordedSeries north = read_usual(flight, naming, "ground_speed_north");
   if (east.values.empty() || north.values.empty()) return {};
   const std::string both = east.variable + " and " + north.variable;
   velocity = {{both}, {both}};
@@ -63,8 +63,8 @@ std::vector<Jump> contradictions(const std::vector<double>& east, const std::vec
   const double limit = std::max(min_departure, deviations * usual);
   if (!(usual < min_departure)) return {};
   std::vector<Jump> found;
-  for (const Run& run :
-       not_shorter(runs_where(departure.size(), [&](std::size_t i) { return departure[i] > limit; }), 3))
+  for (const IndexRange& run :
+       drop_short(runs_where(departure.size(), [&](std::size_t i) { return departure[i] > limit; }), 3))
     found.push_back({run.first, run.length(), extent(departure, run).maximum});
   return found;
 }

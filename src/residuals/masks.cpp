@@ -123,7 +123,7 @@ std::vector<Mask> find_masks(const FlightSamples& samples, const ModelOnSamples&
   }
   reference.mark_implausible(masks, samples.motion.airspeed);
   // In a gust the dynamic pressure and the residual by wind jump together, although every sensor works.
-  if (reference.reach() == 0) {
+  if (reference.half_width() == 0) {
     const std::vector<double> used = masked(residual, masks, Mask::none);
     for (const std::size_t sample : find_bursts(used, pressures, samples.time, samples.step))
       mark(sample, Mask::burst);

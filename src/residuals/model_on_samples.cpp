@@ -55,7 +55,7 @@ std::vector<Batch::Input> ModelOnSamples::gathered(const std::vector<std::size_t
   return inputs;
 }
 
-bool ModelOnSamples::stands_at(const double* parameters) const {
+bool ModelOnSamples::matches_parameters(const double* parameters) const {
   return std::all_of(moving_.begin(), moving_.end(), [parameters](const Moving& each) {
     return parameters[each.parameter] == each.column->at;
   });

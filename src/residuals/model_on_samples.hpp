@@ -87,7 +87,7 @@ class ModelOnSamples {
   Batch::Derivative derivative_by(std::size_t parameter, double* values) const;
 
   /// True if the columns that depend on coefficients were computed at these parameters.
-  bool stands_at(const double* parameters) const;
+  bool matches_parameters(const double* parameters) const;
 
   /// Parameters of the file; those on which columns depend have the values of the columns.
   std::vector<double> parameters_of_columns() const;

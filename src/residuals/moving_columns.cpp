@@ -86,7 +86,7 @@ void find_moving_columns(const Model& model, const double* parameters, const std
 std::vector<Batch::Input> columns_at(const double* parameters, const ModelOnSamples& model,
                                      const FlightSamples& samples, ModelSamples& store) {
   std::vector<Batch::Input> inputs = model.columns();
-  if (model.stands_at(parameters)) return inputs;
+  if (model.matches_parameters(parameters)) return inputs;
   store = samples.model;
   find_moving_columns(model.model(), parameters, samples.time, samples.step, store);
   for (Batch::Input& input : inputs) input.values = store.find(input.quantity)->data();

@@ -76,9 +76,9 @@ class ReferenceOnSamples {
   virtual const internal::LamsOnSamples* laser() const { return nullptr; }
 
   /// Number of samples on either side on which its residual depends.
-  virtual std::size_t reach() const { return 0; }
+  virtual std::size_t half_width() const { return 0; }
 
-  /// `Residuals::differentiate_along`; called only if `reach()` is not 0.
+  /// `Residuals::differentiate_along`; called only if `half_width()` is not 0.
   virtual void differentiate_along(const std::vector<std::size_t>&, const double*,
                                    const std::vector<Direction>&, double*) const {}
 

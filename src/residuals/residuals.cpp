@@ -141,7 +141,7 @@ void Residuals::evaluate_at_sensor(const std::vector<std::size_t>& samples, cons
   }
 }
 
-std::size_t Residuals::reach() const { return reference_->reach(); }
+std::size_t Residuals::half_width() const { return reference_->half_width(); }
 
 void Residuals::differentiate_along(const std::vector<std::size_t>& samples, const double* parameters,
                                     const std::vector<Direction>& directions, double* derivatives) const {

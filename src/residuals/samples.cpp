@@ -68,7 +68,7 @@ FlightMotion read_motion(const Flight& flight, const ModelDefinition& model, Fli
   motion.airspeed = measured_airspeed(samples.model);
   motion.altitude = read(Quantity::altitude);
   if (motion.altitude.empty())
-    motion.altitude = take("altitude", read_usual(flight, family_of(model, flight), "other_altitude"));
+    motion.altitude = take("altitude", read_usual(flight, naming_of(model, flight), "other_altitude"));
   motion.vertical_speed = read(Quantity::vertical_speed);
   motion.roll = read(Quantity::roll);
   motion.pitch = read(Quantity::pitch);

@@ -50,9 +50,7 @@ std::string inputs_of(const ModelDefinition& file, bool with_laser) {
 std::uint64_t samples_key(const ModelDefinition& model, const Reference& reference, const MaskOptions& mask) {
   std::string text = fmt::format("{}\n{}\n{}", inputs_of(model, reference.reads_laser()), reference.inputs(),
                                  mask.min_airspeed);
-  // Exclusions change the mask only.
-  const std::string intervals = mask.intervals ? text_of(*mask.intervals) : "";
-  if (!intervals.empty()) text += "\n" + intervals;
+  if (mask.intervals) text += "\n" + text_of(*mask.intervals);
   return digest_of(text);
 }
 

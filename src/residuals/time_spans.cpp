@@ -10,11 +10,11 @@
 
 namespace pcor::internal {
 
-std::vector<Run> marked_runs(const std::vector<bool>& marked, std::size_t max_gap) {
-  return bridged(runs_where(marked.size(), [&](std::size_t i) { return marked[i]; }), max_gap);
+std::vector<IndexRange> marked_runs(const std::vector<bool>& marked, std::size_t max_gap) {
+  return merge_gaps(runs_where(marked.size(), [&](std::size_t i) { return marked[i]; }), max_gap);
 }
 
-std::string times_of(const std::vector<Run>& runs, const std::vector<double>& time) {
+std::string times_of(const std::vector<IndexRange>& runs, const std::vector<double>& time) {
   constexpr std::size_t max_spans = 6;
   constexpr const char* clock = "%H:%M:%S";
   std::vector<std::string> spans;

@@ -79,7 +79,7 @@ void add(ModelDefinition& file, ModelEffect effect) {
 ModelDefinition add_effects(const ModelDefinition& model, const std::vector<ModelEffect>& effects,
                             const std::vector<std::string>& variables, const Flight* flight) {
   ModelDefinition file = model;
-  file.law.in_processing = false;
+  file.law.operational = false;
   for (const ModelEffect& effect : effects) add(file, effect);
   BindingError error;
   while (!Chain::build(file.model, file.roles(), &error)) {

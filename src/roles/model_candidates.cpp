@@ -22,20 +22,20 @@ namespace {
 std::string day_of(const Flight& flight) { return utc_text(flight.time().first, "%Y-%m-%d"); }
 
 /// Index of the model's pressures among the measured pairs of its aircraft.
-std::size_t place_of_pressures(const ModelDefinition& model, const VariableNaming& family) {
+std::size_t place_of_pressures(const ModelDefinition& model, const VariableNaming& naming) {
   const auto found =
-      std::find_if(family.measured.begin(), family.measured.end(), [&](const PressurePair& pair) {
+      std::find_if(naming.measured.begin(), naming.measured.end(), [&](const PressurePair& pair) {
         return pair.static_pressure == model.variable_of(Quantity::static_pressure) &&
                pair.dynamic_pressure == model.variable_of(Quantity::dynamic_pressure);
       });
-  return static_cast<std::size_t>(found - family.measured.begin());
+  return static_cast<std::size_t>(found - naming.measured.begin());
 }
 
 /// The candidate with the smallest rank is first.
-auto rank_of(const ModelCandidate& law, const VariableNaming& family) {
+auto rank_of(const ModelCandidate& law, const VariableNaming& naming) {
   return std::make_tuple(!law.fits(), -static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
-                         !law.model.law.in_processing, !doubt_of_dates(law.model.law).empty(),
-                         place_of_pressures(law.model, family));
+                         !law.model.law.operational, !doubt_of_dates(law.model.law).empty(),
+                         place_of_pressures(law.model, naming));
 }
 
 /// Reason why a model cannot correct a flight that has its variables; empty if it can.
@@ -58,7 +58,7 @@ ModelCandidate law_of_model(const std::filesystem::path& path, ModelDefinition m
     // A laser may be off.
     if (role != Quantity::lams_airspeed && !flight.has(variable)) law.lacks.push_back(variable);
   }
-  law.is_in_time = law.model.law.holds_on(day_of(flight));
+  law.is_in_time = law.model.law.is_valid_on(day_of(flight));
   if (law.fits()) law.why_not = why_not(flight, law.model);
   return law;
 }
@@ -80,7 +80,7 @@ std::string reasons_of(const std::vector<ModelCandidate>& laws) {
 std::string doubt_of_dates(const LawInfo& law) {
   const bool begins = !law.valid_from.empty();
   const bool ends = !law.valid_to.empty();
-  if (law.in_processing || (begins && ends)) return "";
+  if (law.operational || (begins && ends)) return "";
   if (begins) return "end not stated";
   return (ends ? "beginning not stated" : "dates not stated") +
          (law.note.empty() ? "" : "; note: " + law.note);
@@ -98,7 +98,7 @@ std::string applicable_text(const std::vector<ModelCandidate>& laws) {
 
 std::vector<ModelCandidate> model_candidates(const Flight& flight,
                                              const std::vector<std::filesystem::path>& models, Notes& notes) {
-  const VariableNaming& family = family_of(flight);
+  const VariableNaming& naming = naming_of(flight);
   std::vector<ModelCandidate> laws;
   for (const std::filesystem::path& path : models) {
     try {
@@ -108,8 +108,8 @@ std::vector<ModelCandidate> model_candidates(const Flight& flight,
       notes.emplace_back(error.what());
     }
   }
-  std::stable_sort(laws.begin(), laws.end(), [&family](const ModelCandidate& a, const ModelCandidate& b) {
-    return rank_of(a, family) < rank_of(b, family);
+  std::stable_sort(laws.begin(), laws.end(), [&naming](const ModelCandidate& a, const ModelCandidate& b) {
+    return rank_of(a, naming) < rank_of(b, naming);
   });
   return laws;
 }
@@ -134,15 +134,15 @@ ModelCandidate model_candidate(const Flight& flight, const std::vector<std::file
     throw Error(Error::Code::model,
                 fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
   for (const ModelCandidate& law : laws) {
-    if (!first.model.law.in_processing && law.model.law.in_processing && law.is_in_time)
+    if (!first.model.law.operational && law.model.law.operational && law.is_in_time)
       notes.push_back(
           fmt::format("{} is now processed with another model, which does not apply to this flight: {}",
                       flight.aircraft(), reasons_of({law})));
   }
-  const VariableNaming& family = family_of(flight);
+  const VariableNaming& naming = naming_of(flight);
   laws.erase(
       std::find_if(laws.begin(), laws.end(),
-                   [&](const ModelCandidate& law) { return rank_of(law, family) != rank_of(first, family); }),
+                   [&](const ModelCandidate& law) { return rank_of(law, naming) != rank_of(first, naming); }),
       laws.end());
   if (laws.size() > 1) {
     std::vector<std::string> names;

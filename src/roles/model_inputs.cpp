@@ -35,10 +35,10 @@ void warn_once(Notes& notes, std::string text) {
 
 /// The unit in the model replaces the unit in the file. Either may be wrong. A sign that the aircraft's data
 /// state is known.
-void note_other_unit(const Flight& flight, const ModelDefinition& file, const VariableNaming& family,
+void note_other_unit(const Flight& flight, const ModelDefinition& file, const VariableNaming& naming,
                      Quantity role, Notes& notes) {
   const std::string& name = file.variables.at(role);
-  const std::string stated = unit_of_role(file, family, role);
+  const std::string stated = unit_of_role(file, naming, role);
   if (stated.empty() || !flight.has(name)) return;
   const std::string& recorded = flight.variable(name).units;
   const std::string unit(info_of(role).unit);
@@ -47,7 +47,7 @@ void note_other_unit(const Flight& flight, const ModelDefinition& file, const Va
     const UnitConversion a = UnitConversion::between(recorded, unit, {});
     const UnitConversion b = UnitConversion::between(stated, unit, {});
     const bool same_scale =
-        is_same(a.scale(), b.scale()) || (stated == family.unit_of(name) && is_same(a.scale(), -b.scale()));
+        is_same(a.scale(), b.scale()) || (stated == naming.unit_of(name) && is_same(a.scale(), -b.scale()));
     if (same_scale && is_same(a.offset(), b.offset())) return;
   }
   warn_once(notes, fmt::format("{} is read in {}, not in {} of the file: [units] of the model or the data of "
@@ -121,8 +121,8 @@ ProvenanceList fitted_pressures(const ModelDefinition& file) {
 }
 
 void note_other_units(const Flight& flight, const ModelDefinition& file, Notes& notes) {
-  const VariableNaming& family = family_of(file, flight);
-  for (const auto& entry : file.variables) note_other_unit(flight, file, family, entry.first, notes);
+  const VariableNaming& naming = naming_of(file, flight);
+  for (const auto& entry : file.variables) note_other_unit(flight, file, naming, entry.first, notes);
 }
 
 std::vector<Quantity> roles_of(const ModelDefinition& file, bool with_laser) {
@@ -143,11 +143,11 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
   require_possible_pressure(flight, file, notes);
   note_ambient(flight, file, notes);
   note_wrong_pressure(flight, file, notes);
-  const VariableNaming& family = family_of(file, flight);
+  const VariableNaming& naming = naming_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
     const QuantityInfo& info = info_of(role);
     const std::string& variable = file.variables.at(role);
-    const std::string unit = unit_of_role(file, family, role);
+    const std::string unit = unit_of_role(file, naming, role);
     if (!flight.has(variable) && are_of_two_aircraft(file, flight)) {
       throw Error(
           Error::Code::variable,
@@ -156,8 +156,9 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelDefinition
                       flight.path().string(), file.model.name, file.model.aircraft, flight.aircraft(),
                       variable));
     }
-    note_other_unit(flight, file, family, role, notes);
-    return believed(flight.conversion(variable, std::string(info.unit), std::string(info.name), unit), info);
+    note_other_unit(flight, file, naming, role, notes);
+    return within_plausible_range(
+        flight.conversion(variable, std::string(info.unit), std::string(info.name), unit), info);
   };
   std::vector<ModelInput> inputs;
   for (const Quantity role : roles) {
@@ -219,7 +220,7 @@ Notes notes_on_law(const Flight& flight, const ModelDefinition& file) {
   Notes notes;
   const std::string day = utc_text(flight.time().first, "%Y-%m-%d");
   const LawInfo& law = file.law;
-  if (!law.holds_on(day)) {
+  if (!law.is_valid_on(day)) {
     const bool early = day < law.valid_from;
     notes.push_back(warning_note(
         fmt::format("the law is valid {} {}, the flight is of {}; choose a model of that date in data/models",

@@ -90,7 +90,7 @@ class PressureCheck {
   PressureCheck(const Flight& flight, const ModelDefinition& model)
       : flight_(flight),
         model_(model),
-        family_(family_of(model, flight)),
+        naming_(naming_of(model, flight)),
         static_pressure_(values_of(Quantity::static_pressure)) {}
 
   std::optional<ImpossiblePressure> find() const {
@@ -129,7 +129,7 @@ class PressureCheck {
 
   /// The unit in which a role is read.
   std::string unit_of(Quantity role) const {
-    const std::string stated = unit_of_role(model_, family_, role);
+    const std::string stated = unit_of_role(model_, naming_, role);
     return stated.empty() ? flight_.variable(model_.variables.at(role)).units : stated;
   }
 
@@ -220,19 +220,19 @@ class PressureCheck {
   /// Whether the unit of a role is that of the file, which may be wrong.
   bool is_in_doubt(Quantity role) const {
     const std::string variable = model_.variable_of(role);
-    return !variable.empty() && model_.units.count(role) == 0 && family_.unit_of(variable).empty();
+    return !variable.empty() && model_.units.count(role) == 0 && naming_.unit_of(variable).empty();
   }
 
   /// A GPS height; the pressure height would always agree with the pressure.
   std::string height_variable() const {
     const std::string named = model_.variable_of(Quantity::altitude);
-    return named.empty() ? first_with_values(flight_, family_, "altitude") : named;
+    return named.empty() ? first_with_values(flight_, naming_, "altitude") : named;
   }
 
   /// The values in the unit of the role; empty if the variable cannot be read.
   std::vector<double> values_as(Quantity role, const std::string& variable,
                                 const std::string& stated = {}) const {
-    const std::string unit = stated.empty() ? family_.unit_of(variable) : stated;
+    const std::string unit = stated.empty() ? naming_.unit_of(variable) : stated;
     const std::string requested(info_of(role).unit);
     if (!has_values(flight_, variable, requested, unit)) return {};
     return read_values(flight_, variable, flight_.conversion(variable, requested, "", unit)).values;
@@ -241,7 +241,7 @@ class PressureCheck {
   std::vector<double> values_of(Quantity role) const {
     const std::string variable = model_.variable_of(role);
     if (variable.empty()) return {};
-    return values_as(role, variable, unit_of_role(model_, family_, role));
+    return values_as(role, variable, unit_of_role(model_, naming_, role));
   }
 
   /// Ratio of the static pressure to that of the height, NaN if unknown, and its maximum difference from 1.
@@ -268,19 +268,19 @@ class PressureCheck {
   /// it.
   template <class Visit>
   void each_other_system(Quantity role, const Visit& visit) const {
-    for (const auto* pairs : {&family_.measured, &family_.processed}) {
+    for (const auto* pairs : {&naming_.measured, &naming_.processed}) {
       for (const PressurePair& pair : *pairs) {
         const bool is_static = role == Quantity::static_pressure;
         if ((is_static ? pair.static_pressure : pair.dynamic_pressure) == model_.variable_of(role)) continue;
         const std::vector<double> other = values_as(Quantity::static_pressure, pair.static_pressure);
-        visit(pair, pairs == &family_.measured, other, ratio_of(static_pressure_, other));
+        visit(pair, pairs == &naming_.measured, other, ratio_of(static_pressure_, other));
       }
     }
   }
 
   const Flight& flight_;
   const ModelDefinition& model_;
-  const VariableNaming& family_;
+  const VariableNaming& naming_;
   std::vector<double> static_pressure_;
 };
 

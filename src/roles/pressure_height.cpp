@@ -111,8 +111,8 @@ HeightEvidence height_evidence(const Flight& flight, const std::vector<double>& 
     try {
       const QuantityInfo& info = info_of(Quantity::static_pressure);
       const UnitConversion conversion = flight.conversion(variable, std::string(info.unit), "", unit);
-      HeightEvidence evidence =
-          compare_height(height, read_values(flight, variable, believed(conversion, info)).values);
+      HeightEvidence evidence = compare_height(
+          height, read_values(flight, variable, within_plausible_range(conversion, info)).values);
       evidence.pressure = variable;
       if (closest.pressure.empty()) slope = evidence.slope;
       const bool is_closer = evidence.kind > closest.kind ||
@@ -133,12 +133,12 @@ std::vector<StatedPressure> static_pressures_of(const Flight& flight, const Mode
                                      [&](const StatedPressure& each) { return each.variable == variable; });
     if (is_new && has_values(flight, variable, "hPa", unit)) pressures.push_back({variable, unit});
   };
-  const VariableNaming& family = family_of(model, flight);
+  const VariableNaming& naming = naming_of(model, flight);
   const auto named = model.variables.find(Quantity::static_pressure);
   if (named != model.variables.end())
-    add(named->second, unit_of_role(model, family, Quantity::static_pressure));
-  for (const auto* pairs : {&family.measured, &family.processed}) {
-    for (const PressurePair& pair : *pairs) add(pair.static_pressure, family.unit_of(pair.static_pressure));
+    add(named->second, unit_of_role(model, naming, Quantity::static_pressure));
+  for (const auto* pairs : {&naming.measured, &naming.processed}) {
+    for (const PressurePair& pair : *pairs) add(pair.static_pressure, naming.unit_of(pair.static_pressure));
   }
   return pressures;
 }

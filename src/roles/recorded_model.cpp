@@ -9,10 +9,10 @@
 namespace pcor::internal {
 
 std::vector<PressurePair> measured_pairs(const Flight& flight) {
-  const VariableNaming& family = family_of(flight);
+  const VariableNaming& naming = naming_of(flight);
   std::vector<PressurePair> pairs;
-  std::copy_if(family.measured.begin(), family.measured.end(), std::back_inserter(pairs),
-               [&](const PressurePair& pair) { return has_values(flight, family, pair); });
+  std::copy_if(naming.measured.begin(), naming.measured.end(), std::back_inserter(pairs),
+               [&](const PressurePair& pair) { return has_values(flight, naming, pair); });
   return pairs;
 }
 
@@ -25,18 +25,18 @@ ModelDefinition model_of(const PressurePair& pair) {
 }
 
 std::optional<ModelDefinition> recorded_model(const Flight& flight) {
-  const VariableNaming& family = family_of(flight);
-  const PressurePair* pair = first_with_values(flight, family, family.processed);
-  if (pair == nullptr) pair = first_with_values(flight, family, family.measured);
+  const VariableNaming& naming = naming_of(flight);
+  const PressurePair* pair = first_with_values(flight, naming, naming.processed);
+  if (pair == nullptr) pair = first_with_values(flight, naming, naming.measured);
   if (pair == nullptr) return std::nullopt;
   ModelDefinition model = model_of(*pair);
   const auto take = [&](Quantity role) {
-    const std::string variable = first_with_values(flight, family, info_of(role).name);
+    const std::string variable = first_with_values(flight, naming, info_of(role).name);
     if (!variable.empty()) model.variables[role] = variable;
     return !variable.empty();
   };
   if (!take(Quantity::ambient_temperature)) {
-    if (const Thermometer* const thermometer = first_with_values(flight, family, family.thermometers)) {
+    if (const Thermometer* const thermometer = first_with_values(flight, naming, naming.thermometers)) {
       model.variables[Quantity::recovery_temperature] = thermometer->variable;
       model.model.recovery = published_recovery_factor(thermometer->recovery)->law;
     }

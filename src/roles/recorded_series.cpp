@@ -21,7 +21,8 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
   try {
     const UnitConversion conversion =
         UnitConversion::between(own, std::string(info.unit), {variable, flight.path().string(), ""});
-    std::vector<double> values = read_values(flight, variable, believed(conversion, info)).values;
+    std::vector<double> values =
+        read_values(flight, variable, within_plausible_range(conversion, info)).values;
     if (std::all_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return;
     series.variable = variable;
     series.values = std::move(values);
@@ -31,9 +32,9 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
   }
 }
 
-bool has_role(const Flight& flight, const VariableNaming& family, const std::string& variable,
+bool has_role(const Flight& flight, const VariableNaming& naming, const std::string& variable,
               Quantity role) {
-  return has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable));
+  return has_values(flight, variable, std::string(info_of(role).unit), naming.unit_of(variable));
 }
 
 }  // namespace
@@ -65,16 +66,16 @@ std::vector<double> record_times(const Flight& flight) {
   return times;
 }
 
-RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, std::string_view name) {
+RecordedSeries read_usual(const Flight& flight, const VariableNaming& naming, std::string_view name) {
   RecordedSeries series;
-  for (const std::string& variable : family.names_of(name))
-    try_variable(flight, variable, family.unit_of(variable), *series_named(name), series);
+  for (const std::string& variable : naming.names_of(name))
+    try_variable(flight, variable, naming.unit_of(variable), *series_named(name), series);
   return series;
 }
 
 RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model) {
   constexpr std::string_view name = "longitude";
-  RecordedSeries series = read_usual(flight, family_of(model, flight), name);
+  RecordedSeries series = read_usual(flight, naming_of(model, flight), name);
   if (series.values.empty())
     try_variable(flight, sure_variable(flight, name), "", *series_named(name), series);
   return series;
@@ -82,14 +83,14 @@ RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model
 
 RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Quantity role) {
   const QuantityInfo& info = info_of(role);
-  const VariableNaming& family = family_of(model, flight);
+  const VariableNaming& naming = naming_of(model, flight);
   RecordedSeries series;
   const auto given = model.variables.find(role);
   if (given != model.variables.end())
-    try_variable(flight, given->second, unit_of_role(model, family, role), info, series);
-  for (const std::string& name : usual_variables(family, role)) {
+    try_variable(flight, given->second, unit_of_role(model, naming, role), info, series);
+  for (const std::string& name : usual_variables(naming, role)) {
     if (given == model.variables.end() || name != given->second)
-      try_variable(flight, name, family.unit_of(name), info, series);
+      try_variable(flight, name, naming.unit_of(name), info, series);
   }
   return series;
 }
@@ -107,26 +108,26 @@ bool has_values(const Flight& flight, const std::string& variable, const std::st
   return true;
 }
 
-bool has_values(const Flight& flight, const VariableNaming& family, const PressurePair& pair) {
-  return has_role(flight, family, pair.static_pressure, Quantity::static_pressure) &&
-         has_role(flight, family, pair.dynamic_pressure, Quantity::dynamic_pressure);
+bool has_values(const Flight& flight, const VariableNaming& naming, const PressurePair& pair) {
+  return has_role(flight, naming, pair.static_pressure, Quantity::static_pressure) &&
+         has_role(flight, naming, pair.dynamic_pressure, Quantity::dynamic_pressure);
 }
 
-bool has_values(const Flight& flight, const VariableNaming& family, const Thermometer& thermometer) {
-  return has_role(flight, family, thermometer.variable, Quantity::recovery_temperature);
+bool has_values(const Flight& flight, const VariableNaming& naming, const Thermometer& thermometer) {
+  return has_role(flight, naming, thermometer.variable, Quantity::recovery_temperature);
 }
 
-std::string first_with_values(const Flight& flight, const VariableNaming& family, std::string_view name) {
+std::string first_with_values(const Flight& flight, const VariableNaming& naming, std::string_view name) {
   const std::string unit(series_named(name)->unit);
-  for (const std::string& variable : family.names_of(name)) {
-    if (has_values(flight, variable, unit, family.unit_of(variable))) return variable;
+  for (const std::string& variable : naming.names_of(name)) {
+    if (has_values(flight, variable, unit, naming.unit_of(variable))) return variable;
   }
   return "";
 }
 
-std::string processed_static_pressure(const Flight& flight, const VariableNaming& family) {
-  for (const PressurePair& pair : family.processed) {
-    if (has_role(flight, family, pair.static_pressure, Quantity::static_pressure))
+std::string processed_static_pressure(const Flight& flight, const VariableNaming& naming) {
+  for (const PressurePair& pair : naming.processed) {
+    if (has_role(flight, naming, pair.static_pressure, Quantity::static_pressure))
       return pair.static_pressure;
   }
   return "";

@@ -20,7 +20,7 @@ struct RecordedSeries {
 
 /// Conversion that gives NaN beyond the limits of a series: undeclared marks of missing values, a dead
 /// sensor, or another unit.
-inline UnitConversion believed(const UnitConversion& conversion, const QuantityInfo& info) {
+inline UnitConversion within_plausible_range(const UnitConversion& conversion, const QuantityInfo& info) {
   return conversion.within(info.minimum, info.maximum);
 }
 
@@ -43,7 +43,7 @@ std::vector<double> record_times(const Flight& flight);
 
 /// The first of the usual variables of a series that is there, has values and a unit that fits.
 /// @param name of the series (`series_named`)
-RecordedSeries read_usual(const Flight& flight, const VariableNaming& family, std::string_view name);
+RecordedSeries read_usual(const Flight& flight, const VariableNaming& naming, std::string_view name);
 
 /// The longitude, which no model names: the usual one, or the variable that is sure by the evidence.
 RecordedSeries read_longitude(const Flight& flight, const ModelDefinition& model);
@@ -57,24 +57,25 @@ RecordedSeries read_role(const Flight& flight, const ModelDefinition& model, Qua
 bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
                 const std::string& stated = "");
 
-/// Whether a flight has values of both pressures, or of the thermometer. The family may state their units.
-bool has_values(const Flight& flight, const VariableNaming& family, const PressurePair& pair);
-bool has_values(const Flight& flight, const VariableNaming& family, const Thermometer& thermometer);
+/// Whether a flight has values of both pressures, or of the thermometer. The convention may state their
+/// units.
+bool has_values(const Flight& flight, const VariableNaming& naming, const PressurePair& pair);
+bool has_values(const Flight& flight, const VariableNaming& naming, const Thermometer& thermometer);
 
-/// The first of the pairs or thermometers of a family that has values; nullptr without such a one.
+/// The first of the pairs or thermometers of a convention that has values; nullptr without such a one.
 template <class Entry>
-const Entry* first_with_values(const Flight& flight, const VariableNaming& family,
+const Entry* first_with_values(const Flight& flight, const VariableNaming& naming,
                                const std::vector<Entry>& entries) {
   const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const Entry& entry) { return has_values(flight, family, entry); });
+                                  [&](const Entry& entry) { return has_values(flight, naming, entry); });
   return found == entries.end() ? nullptr : &*found;
 }
 
 /// The first of the usual variables of a series that has values; empty without such a variable.
 /// @param name of the series (`series_named`)
-std::string first_with_values(const Flight& flight, const VariableNaming& family, std::string_view name);
+std::string first_with_values(const Flight& flight, const VariableNaming& naming, std::string_view name);
 
 /// Name of the static pressure corrected by the flight's own processing; empty if not recorded.
-std::string processed_static_pressure(const Flight& flight, const VariableNaming& family);
+std::string processed_static_pressure(const Flight& flight, const VariableNaming& naming);
 
 }  // namespace pcor::internal

@@ -43,29 +43,29 @@ std::vector<std::string> names_of_series() {
   return names;
 }
 
-const VariableNaming& family_of(const ModelDefinition& model, const Flight& flight) {
-  return model.roles_from.empty() ? family_of(flight) : family_named(model.roles_from);
+const VariableNaming& naming_of(const ModelDefinition& model, const Flight& flight) {
+  return model.roles_from.empty() ? naming_of(flight) : naming_by_name(model.roles_from);
 }
 
-std::vector<std::string> usual_variables(const VariableNaming& family, Quantity role) {
-  return is_chosen_by_model(role) ? std::vector<std::string>() : family.names_of(info_of(role).name);
+std::vector<std::string> usual_variables(const VariableNaming& naming, Quantity role) {
+  return is_chosen_by_model(role) ? std::vector<std::string>() : naming.names_of(info_of(role).name);
 }
 
 std::vector<std::string> usual_variables(Quantity role) {
   std::vector<std::string> names;
-  for (const VariableNaming& family : aircraft_families()) append(names, usual_variables(family, role));
+  for (const VariableNaming& naming : known_namings()) append(names, usual_variables(naming, role));
   return names;
 }
 
-std::vector<std::string> usual_heights(const VariableNaming& family) {
-  std::vector<std::string> names = usual_variables(family, Quantity::altitude);
-  append(names, family.names_of("other_altitude"));
+std::vector<std::string> usual_heights(const VariableNaming& naming) {
+  std::vector<std::string> names = usual_variables(naming, Quantity::altitude);
+  append(names, naming.names_of("other_altitude"));
   return names;
 }
 
-std::string unit_of_role(const ModelDefinition& model, const VariableNaming& family, Quantity role) {
+std::string unit_of_role(const ModelDefinition& model, const VariableNaming& naming, Quantity role) {
   const auto stated = model.units.find(role);
-  return stated == model.units.end() ? family.unit_of(model.variables.at(role)) : stated->second;
+  return stated == model.units.end() ? naming.unit_of(model.variables.at(role)) : stated->second;
 }
 
 }  // namespace pcor::internal

@@ -30,7 +30,7 @@ class Plan {
     }
   }
 
-  FlownPlan result() && { return {std::move(pilot_.truth()), std::move(legs_)}; }
+  SimulatedPlan result() && { return {std::move(pilot_.truth()), std::move(legs_)}; }
 
  private:
   void fly(const Leg& leg) {
@@ -245,6 +245,6 @@ void complete(Leg& leg, const AircraftInfo& aircraft) {
     if (kind == leg.kind && std::isnan(leg.*number)) leg.*number = value;
 }
 
-FlownPlan fly(const Scenario& scenario) { return Plan(scenario).result(); }
+SimulatedPlan fly(const Scenario& scenario) { return Plan(scenario).result(); }
 
 }  // namespace pcor::internal::simulate

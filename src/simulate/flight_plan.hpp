@@ -44,12 +44,12 @@ struct LegSteps {
 };
 
 /// The whole flight, step by step, and the legs in it.
-struct FlownPlan {
+struct SimulatedPlan {
   Truth truth;
   std::vector<LegSteps> legs;
 };
 
 /// Flies the legs of a scenario one after another. @throws Error if one cannot be flown.
-FlownPlan fly(const Scenario& scenario);
+SimulatedPlan fly(const Scenario& scenario);
 
 }  // namespace pcor::internal::simulate

@@ -210,11 +210,11 @@ std::vector<double> values_at(const std::vector<double>& values, const std::vect
   return selected;
 }
 
-LegFlown describe(const LegSteps& steps, const Truth& truth, double start) {
-  LegFlown leg;
+SimulatedLeg describe(const LegSteps& steps, const Truth& truth, double start) {
+  SimulatedLeg leg;
   leg.kind = leg_info[static_cast<std::size_t>(steps.kind)].name;
-  leg.first_time = start + time_step * static_cast<double>(steps.first);
-  leg.last_time = start + time_step * static_cast<double>(steps.last);
+  leg.start_time = start + time_step * static_cast<double>(steps.first);
+  leg.end_time = start + time_step * static_cast<double>(steps.last);
   const auto extremes = [&](const Series& series) {
     const auto [least, greatest] =
         std::minmax_element(series.data() + steps.first, series.data() + steps.last);
@@ -240,9 +240,9 @@ FileDescription description_of(const Scenario& scenario, const SimulationSummary
   description.longitude = "GGLON";
   description.altitude = "GGALT";
   std::string legs;
-  for (const LegFlown& leg : summary.legs) {
+  for (const SimulatedLeg& leg : summary.legs) {
     legs += fmt::format("{}{} {}-{}", legs.empty() ? "" : "; ", leg.kind,
-                        utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"));
+                        utc_text(leg.start_time, "%H:%M:%S"), utc_text(leg.end_time, "%H:%M:%S"));
   }
   const AircraftInfo& aircraft = info_of(scenario.aircraft);
   description.attributes = {{"source", "simulation"},
@@ -261,7 +261,7 @@ FileDescription description_of(const Scenario& scenario, const SimulationSummary
 
 SimulationSummary simulate_flight(const Scenario& scenario, const std::filesystem::path& output,
                                   const SimulateOptions& options) {
-  const FlownPlan plan = fly(scenario);
+  const SimulatedPlan plan = fly(scenario);
   Recording recording(scenario, plan.truth);
   std::vector<RecordedVariable>& columns = recording.columns();
 
@@ -275,12 +275,12 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   summary.seed = scenario.seed;
   summary.records = kept.size();
   summary.rate = scenario.rate;
-  summary.first_time = scenario.start + static_cast<double>(kept.front());
-  summary.last_time = scenario.start + static_cast<double>(kept.back());
+  summary.start_time = scenario.start + static_cast<double>(kept.front());
+  summary.end_time = scenario.start + static_cast<double>(kept.back());
   for (const LegSteps& leg : plan.legs) summary.legs.push_back(describe(leg, plan.truth, scenario.start));
   for (const Scenario::Effect& effect : scenario.effects) summary.effects.push_back(effect.id);
 
-  FlightWriter writer(output, NewFlight{summary.first_time},
+  FlightWriter writer(output, NewFlight{summary.start_time},
                       description_of(scenario, summary, options.history));
   for (const RecordedVariable& column : columns) {
     writer.define(column.variable);

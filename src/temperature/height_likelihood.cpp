@@ -173,12 +173,12 @@ std::vector<std::array<NoisePoint, 2>> standard_deviations_of_noise(const std::v
   };
   // Distance along `direction` at which -2 ln L is 1 above its minimum, to 20 %, in `trials`; or the distance
   // to a bound.
-  const auto rise_by_one = [&](const Logarithms& direction, double reach, int trials) {
+  const auto rise_by_one = [&](const Logarithms& direction, double distance, int trials) {
     constexpr double min_rise = 1e-3;
-    NoisePoint point = at(centre + reach * direction);
+    NoisePoint point = at(centre + distance * direction);
     for (int trial = 1; trial < trials && std::abs(point.rise - 1.0) > 0.2; ++trial) {
-      reach *= std::clamp(1.0 / std::sqrt(std::max(point.rise, min_rise)), 0.25, 4.0);
-      point = at(centre + reach * direction);
+      distance *= std::clamp(1.0 / std::sqrt(std::max(point.rise, min_rise)), 0.25, 4.0);
+      point = at(centre + distance * direction);
     }
     return point;
   };
@@ -324,10 +324,10 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
                                  const HeightPrior& prior, const Workers& workers) {
   std::vector<std::uint64_t> sizes;
   for (const HeightRecord& record : records) sizes.push_back(record.blocks.size());
-  const FlightPartition share(workers.comm, sizes);
-  const auto each = share.gather_flights<HeightEquations>([&](std::vector<HeightEquations>& parts) {
+  const FlightPartition partition(workers.comm, sizes);
+  const auto each = partition.all_gather_parts<HeightEquations>([&](std::vector<HeightEquations>& parts) {
     parallel_for(records.size(), workers.threads, [&](std::size_t i) {
-      if (share.is_local(i)) parts[i] = height_equations(records[i], noise, prior);
+      if (partition.is_local(i)) parts[i] = height_equations(records[i], noise, prior);
     });
   });
   HeightEquations sum;

@@ -224,10 +224,10 @@ HeightBlock block_of(const FlightAir& air, const std::vector<Eigen::Vector2d>& w
   HeightBlock block;
   block.starts_segment = first->starts_segment;
   block.samples = static_cast<std::size_t>(end - first);
-  const double first_time = air.time()[first->sample];
+  const double start_time = air.time()[first->sample];
   for (auto point = first; point != end; ++point) {
     const std::size_t i = point->sample;
-    block.time += air.time()[i] - first_time;
+    block.time += air.time()[i] - start_time;
     block.excess += point->excess;
     block.columns += point->columns;
     block.east += way[i][0];
@@ -241,7 +241,7 @@ HeightBlock block_of(const FlightAir& air, const std::vector<Eigen::Vector2d>& w
                         &block.temperature})
     *value /= n;
   block.columns /= n;
-  block.time += first_time;
+  block.time += start_time;
   block.length = n * air.step();
   const double kelvin = block.temperature + constants::ice_point;
   block.metres_per_hpa =
@@ -287,8 +287,8 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
                     "in the table [variables]",
                     name));
   }
-  if (const std::string trouble = height_problem(air); !trouble.empty())
-    throw Error(Error::Code::variable, fmt::format("{}: {}", name, trouble));
+  if (const std::string problem = height_problem(air); !problem.empty())
+    throw Error(Error::Code::variable, fmt::format("{}: {}", name, problem));
 
   HeightRecord record;
   record.name = name;

@@ -23,7 +23,7 @@ constexpr double settled_temperature = 1e-3;  // K
 /// The rms difference of delta-p of two models over the flights, in the air, hPa.
 double defect_change(const FlightSet& flights, const ModelDefinition& before, const ModelDefinition& after,
                      const TemperatureOptions& options) {
-  const auto sum = flights.share().sum_of_each_flight<Eigen::Vector2d>([&](std::size_t number) {
+  const auto sum = flights.partition().all_reduce_flights<Eigen::Vector2d>([&](std::size_t number) {
     const FlightAir first = read_flight_air(flights, number, before, options.mask);
     const FlightAir second = read_flight_air(flights, number, after, options.mask);
     Eigen::Vector2d squares_and_count = Eigen::Vector2d::Zero();
@@ -80,11 +80,11 @@ IterativeCalibration calibrate_iteratively(const FlightSet& flights, const Model
     current = result.temperature.model;
     result.rounds.push_back(std::move(round));
   }
-  descend(result.temperature.model, model, "fitted to", flights.title());
+  record_provenance(result.temperature.model, model, "fitted to", flights.title());
   result.temperature.degrees = std::move(degrees);
   if (result.rounds.size() > 1) {
     Notes& notes = result.temperature.notes;
-    const bool has_graver = !result.temperature.worse.empty();
+    const bool has_graver = !result.temperature.rejection_reason.empty();
     notes.insert(notes.begin() + (has_graver ? 1 : 0), notes_on_degree.begin(), notes_on_degree.end());
     result.temperature.notes_on_degree = std::move(notes_on_degree);
   }

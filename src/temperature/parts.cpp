@@ -127,8 +127,8 @@ Disagreement disagreement_of(const std::vector<PartCorrection>& parts) {
   for (const PartCorrection& part : parts)
     result.chi_squared += std::pow((part.correction - part.common - mean) / part.difference_error, 2);
   const auto freedom = static_cast<double>(parts.size() - 1);
-  result.chance = chi_squared_tail(result.chi_squared, freedom);
-  if (result.chance < rare)
+  result.p_value = chi_squared_tail(result.chi_squared, freedom);
+  if (result.p_value < rare)
     result.spread = std::sqrt((result.chi_squared - freedom) / (weights - squared_weights / weights));
   return result;
 }

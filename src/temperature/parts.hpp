@@ -31,7 +31,7 @@ std::vector<PartCorrection> corrections_of_halves(const std::vector<HeightRecord
 /// Test of heterogeneity between parts, and its size.
 struct Disagreement {
   double chi_squared = 0.0;  ///< chi-squared of the parts about their mean
-  double chance = 1.0;       ///< the probability of as much or more by the noise alone
+  double p_value = 1.0;      ///< the probability of as much or more by the noise alone
   double spread = 0.0;  ///< standard deviation of the parts beyond their errors, K; 0 if it may be chance
 };
 

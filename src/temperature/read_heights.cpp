@@ -17,10 +17,10 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/model_on_samples.hpp"
-#include "roles/aircraft_family.hpp"
 #include "roles/recorded_model.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
+#include "roles/variable_naming.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -38,9 +38,9 @@ std::string remedy(const ModelDefinition& model, const Flight& flight) {
     return fmt::format("{} contains no water vapour: name another humidity in the model's [variables]",
                        named->second);
   }
-  const VariableNaming& family = family_of(model, flight);
+  const VariableNaming& naming = naming_of(model, flight);
   for (const Quantity role : humidity_roles) {
-    const std::string variable = first_with_values(flight, family, info_of(role).name);
+    const std::string variable = first_with_values(flight, naming, info_of(role).name);
     if (!variable.empty()) {
       return fmt::format(
           "give the model [variables] {} = \"{}\", which the flight records, and [humidity] moist = true",
@@ -174,7 +174,7 @@ HeightRecord record_of(const FlightSet& flights, std::size_t number, const Model
               "{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; omit it for raw flights",
               flight.path().string()));
     }
-    for (const Quantity role : flown_quantities) {
+    for (const Quantity role : motion_quantities) {
       if (model.variables.count(role) > 0) recorded->variables[role] = model.variables.at(role);
       if (model.units.count(role) > 0) recorded->units[role] = model.units.at(role);
     }
@@ -194,8 +194,7 @@ HeightRecord record_of(const FlightSet& flights, std::size_t number, const Model
 
 }  // namespace
 
-std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefinition& model,
-                                 const Flight& flight) {
+std::string dry_air_problem(const HeightRecord& record, const ModelDefinition& model, const Flight& flight) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   double by_vapor = 0.0;
@@ -252,7 +251,7 @@ FlightHeightRecord read_heights(const FlightSet& flights, std::size_t number, co
   FlightHeightRecord part;
   try {
     part.record = record_of(flights, number, model, options);
-    part.dry = trouble_with_dry_air(*part.record, model, flights[number]);
+    part.dry = dry_air_problem(*part.record, model, flights[number]);
     if (!part.dry.empty() && !options.dry_air)
       throw Error(Error::Code::variable, part.dry + "; --force continues with dry air");
     if (options.skip_returning && part.record->returns)

@@ -29,8 +29,7 @@ struct FlightHeightRecord {
 /// Reason against assuming dry air for a flight: it reaches below 5 km, where neglected vapour resembles a
 /// thermometer that reads too low by up to a few K. Names a humidity variable for the model, if there is one.
 /// Empty if the integral includes the vapour, or the flight stays above.
-std::string trouble_with_dry_air(const HeightRecord& record, const ModelDefinition& model,
-                                 const Flight& flight);
+std::string dry_air_problem(const HeightRecord& record, const ModelDefinition& model, const Flight& flight);
 
 /// Variance of delta-p stated by a model, hPa2, averaged over the samples in the air: from the covariance of
 /// its coefficients, and its remaining error. nullopt if the model states neither.

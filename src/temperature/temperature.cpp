@@ -71,9 +71,9 @@ class TemperatureCalibration {
     flights_.require_each_once();
     flights_.require_one_aircraft();
     std::size_t done = 0;
-    auto parts = flights_.share().of_each_flight<FlightHeightRecord>([&](std::size_t number) {
+    auto parts = flights_.partition().all_gather_flights<FlightHeightRecord>([&](std::size_t number) {
       FlightHeightRecord part = read_heights(flights_, number, model_, options_);
-      if (options_.progress) options_.progress(++done, flights_.share().local_count());
+      if (options_.progress) options_.progress(++done, flights_.partition().local_count());
       return part;
     });
     for (std::size_t number = 0; number < flights_.size(); ++number) {
@@ -172,10 +172,10 @@ class TemperatureCalibration {
       --terms_;
       maximise();
     }
-    if (const std::string trouble = impossible(); !trouble.empty()) {
+    if (const std::string problem = impossible(); !problem.empty()) {
       throw Error(
           Error::Code::fit,
-          fmt::format("the correction of the temperature is physically implausible: {}; {}", trouble,
+          fmt::format("the correction of the temperature is physically implausible: {}; {}", problem,
                       terms_ > 1
                           ? "these flights do not determine this number of coefficients: reduce --degree"
                           : "check recovery_temperature and the altitude in the model"));
@@ -447,9 +447,9 @@ class TemperatureCalibration {
   }
 
   void write_notes() {
-    result_.worse = reason_against();
+    result_.rejection_reason = reason_against();
     result_.warnings = temperature_warnings(result_);
-    if (!result_.worse.empty()) result_.notes.push_back(result_.worse);
+    if (!result_.rejection_reason.empty()) result_.notes.push_back(result_.rejection_reason);
     if (!options_.degree && records_.size() < min_for_choice) {
       result_.notes_on_degree.push_back(fmt::format(
           "set the degree with --degree if you know it: {} flight{} cannot be cross-validated; the degree "

@@ -59,7 +59,7 @@ std::vector<std::string> temperature_warnings(const TemperatureResult& result) {
     warnings.push_back(fmt::format(
         "{} differ by {:.2g} K, p = {:.1g} (threshold 0.01); this standard deviation is included in "
         "the errors: {}; chi-squared {:.1f} with {} degrees of freedom",
-        who, spread, apart.chance, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1));
+        who, spread, apart.p_value, fmt::join(texts, ", "), apart.chi_squared, parts.size() - 1));
   };
   differ(result.parts_by_flight, result.spread_of_flights, "the thermometers of the flights");
   if (result.spread_of_climbs >= result.spread_of_halves)

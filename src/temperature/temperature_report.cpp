@@ -156,9 +156,10 @@ Report temperature_report(const TemperatureResult& result) {
   const TemperatureCorrection& middle = result.corrections[result.corrections.size() / 2];
   report.title = fmt::format("Temperature correction {} K at {:.0f} °C{}",
                              format_estimate(middle.correction, middle.standard_error, PlusSign::always, "±"),
-                             middle.temperature, result.worse.empty() ? "" : ", not recommended");
+                             middle.temperature, result.rejection_reason.empty() ? "" : ", not recommended");
   report.subtitle = "Calibration by the GPS height for " + result.model.model.name;
-  if (!result.worse.empty()) report.summary.push_back("Not recommended: " + result.worse + ".");
+  if (!result.rejection_reason.empty())
+    report.summary.push_back("Not recommended: " + result.rejection_reason + ".");
   for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");
   for (const Note& note : result.notes)
     report.summary.push_back(fmt::format("{}: {}.", label_of(note), note.text));

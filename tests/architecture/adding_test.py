@@ -83,9 +83,9 @@ namespace pcor::internal {
 
 CheckResult check_my_check(const CheckedFlights& flights) {
   CheckResult result;
-  decide({judged({flights.front().air.step(), 0.1}, 2.0, "s", "record interval")}, result);
+  set_verdict({test_statistic({flights.front().air.step(), 0.1}, 2.0, "s", "record interval")}, result);
   result.finding = "The record interval is short";
-  result.cannot_see = "Insensitive to everything else.";
+  result.limitations = "Insensitive to everything else.";
   return result;
 }
 

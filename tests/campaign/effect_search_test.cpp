@@ -83,7 +83,7 @@ struct Problem {
 
   EffectSearch search() {
     if (groups.empty()) group_by(1);
-    scores = find_scores(FlightPartition(1), bins, {columns}, {residual}, noise);
+    scores = whiten_system(FlightPartition(1), bins, {columns}, {residual}, noise);
     return EffectSearch(scores, base, groups);
   }
 };
@@ -198,7 +198,7 @@ TEST(EffectSearch, AnEffectThatAnotherReferenceSeesIsNotAnErrorOfLinearity) {
   NoiseModel noise = problem.noise;
   noise.level = std::vector<Eigen::VectorXd>(2, Eigen::VectorXd::Constant(300, 0.5));
   const WhitenedSystem scores =
-      find_scores(FlightPartition(2), bins, halves(problem.columns), halves(problem.residual), noise);
+      whiten_system(FlightPartition(2), bins, halves(problem.columns), halves(problem.residual), noise);
   const EffectSearch search(scores, base, problem.groups);
   SearchOptions options;
   EXPECT_THAT(search.run(options).chosen, ElementsAre(4));
@@ -340,8 +340,8 @@ TEST(EffectSearch, FindsAGroupOfTwoColumns) {
   const EffectSearch search = problem.search();
   ASSERT_THAT(search.run({}).chosen, ElementsAre(4U));
   const GroupScore score = search.score(4, {});
-  EXPECT_EQ(score.freedom, 2.0);
-  EXPECT_LT(score.equivalent, score.chi2);
+  EXPECT_EQ(score.degrees_of_freedom, 2.0);
+  EXPECT_LT(score.chi2_one_dof, score.chi2);
   EXPECT_NEAR(score.estimate[0], 0.3, 4.0 * std::sqrt(score.covariance(0, 0)));
   EXPECT_NEAR(score.estimate[1], -0.3, 4.0 * std::sqrt(score.covariance(1, 1)));
 }
@@ -354,7 +354,7 @@ TEST(EffectSearch, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
   problem.group_by(2);
   const EffectSearch search = problem.search();
   const GroupScore score = search.score(0, {});
-  EXPECT_EQ(score.freedom, 1.0);
+  EXPECT_EQ(score.degrees_of_freedom, 1.0);
   // Together they are the effect; four errors of 0.02.
   EXPECT_NEAR(score.estimate[0] + 3.0 * score.estimate[1], 0.5, 0.1);
 }
@@ -426,7 +426,7 @@ TEST(EffectSearch, ThresholdHasTheStatedFalseAlarmRate) {
     const EffectSearch search = problem.search();
     const double threshold = search.run(options).threshold;
     double best = 0.0;
-    for (std::size_t g = 0; g < 12; ++g) best = std::max(best, search.score(g, {}).equivalent);
+    for (std::size_t g = 0; g < 12; ++g) best = std::max(best, search.score(g, {}).chi2_one_dof);
     above += best > threshold ? 1 : 0;
   }
   EXPECT_GE(above, 20 - 14);
@@ -531,17 +531,18 @@ TEST(LeftoverRows, AreOrthogonalToBaseAndOtherFindings) {
   EXPECT_NEAR(evidence, score.chi2 * search.variance({4}), 1e-8 * evidence);
 }
 
-TEST(OneDegreeEquivalent, HasTheSameTailProbability) {
-  for (const double freedom : {1.0, 2.0, 3.0, 6.0}) {
+TEST(Chi2OneDof, HasTheSameTailProbability) {
+  for (const double degrees_of_freedom : {1.0, 2.0, 3.0, 6.0}) {
     double before = -1.0;
     for (double chi2 = 0.0; chi2 < 900.0; chi2 += 0.5) {
-      const double equivalent = chi2_one_dof(chi2, freedom);
+      const double equivalent = chi2_one_dof(chi2, degrees_of_freedom);
       EXPECT_GE(equivalent, before);
       EXPECT_LE(equivalent, chi2 + 1e-12);
       before = equivalent;
       if (chi2 > 0.0 && chi2 < 500.0) {
-        const double tail = chi_squared_tail(chi2, freedom);
-        EXPECT_NEAR(chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail) << freedom << " " << chi2;
+        const double tail = chi_squared_tail(chi2, degrees_of_freedom);
+        EXPECT_NEAR(chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail)
+            << degrees_of_freedom << " " << chi2;
       }
     }
   }

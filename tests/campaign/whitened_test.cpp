@@ -50,7 +50,7 @@ struct Example {
   }
 
   WhitenedSystem system() const {
-    return find_scores(FlightPartition(bins.size()), bins, columns, residuals, noise);
+    return whiten_system(FlightPartition(bins.size()), bins, columns, residuals, noise);
   }
 
   /// The covariance of the noise of a flight.
@@ -71,8 +71,9 @@ struct Example {
     for (Eigen::Index a = 0; a < level.size(); ++a) {
       for (Eigen::Index b = 0; b < level.size(); ++b) {
         const double apart = std::abs(time[static_cast<std::size_t>(a)] - time[static_cast<std::size_t>(b)]);
-        for (std::size_t k = 0; k < slow_times.size(); ++k)
-          result(a, b) += noise.slow[k] * noise.slow[k] * std::exp(-apart / slow_times[k]);
+        for (std::size_t k = 0; k < drift_time_constants.size(); ++k)
+          result(a, b) += noise.drift_component_rms[k] * noise.drift_component_rms[k] *
+                          std::exp(-apart / drift_time_constants[k]);
       }
     }
     return result;
@@ -93,12 +94,12 @@ TEST(WhitenedSystem, EqualsGeneralisedLeastSquares) {
   };
   for (const double drift : {0.0, 0.3, 3.0}) {
     Example example({300, 150}, 4, 1);
-    example.noise.slow = {0.5 * drift, 0.0, drift, 0.2 * drift};
+    example.noise.drift_component_rms = {0.5 * drift, 0.0, drift, 0.2 * drift};
     const WhitenedSystem scores = example.system();
     // Rounding, of matrices whose condition is 1e5 at most.
     EXPECT_TRUE(scores.information.isApprox(expected(example), 1e-9)) << drift;
     EXPECT_TRUE(scores.information.isApprox(scores.information.transpose(), 1e-14));
-    example.noise.slow = {};
+    example.noise.drift_component_rms = {};
     EXPECT_TRUE(scores.plain.isApprox(expected(example), 1e-9)) << drift;
     EXPECT_TRUE(scores.plain.isApprox(scores.plain.transpose(), 1e-14));
   }
@@ -106,7 +107,7 @@ TEST(WhitenedSystem, EqualsGeneralisedLeastSquares) {
 
 TEST(WhitenedSystem, BlockScoresSumToTotalScore) {
   Example example({300, 150}, 4, 2);
-  example.noise.slow = {0.0, 0.5, 0.0, 0.0};
+  example.noise.drift_component_rms = {0.0, 0.5, 0.0, 0.0};
   const WhitenedSystem scores = example.system();
   // The residual without coefficients has the score of the input residual.
   const std::vector<Eigen::VectorXd> left = scores.left(Eigen::VectorXd::Zero(4));
@@ -151,7 +152,7 @@ TEST(WhitenedSystem, DriftReducesInformationOfSlowColumns) {
     example.columns[0](i, 0) = std::cos(3.0 * M_PI * example.bins[0].time()[static_cast<std::size_t>(i)] /
                                         example.bins[0].time().back());
   const WhitenedSystem without = example.system();
-  example.noise.slow = {0.0, 0.0, 1.0, 0.0};
+  example.noise.drift_component_rms = {0.0, 0.0, 1.0, 0.0};
   const WhitenedSystem with = example.system();
   // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to a
   // few tenths of it.

@@ -132,10 +132,10 @@ TEST_F(CheckTest, AgreesWithoutErrors) {
     for (const char* name :
          {"total-pressure", "static-pressure", "reverse-heading", "circles", "speed-run", "pitch", "yaw"}) {
       const CheckResult result = named(checks, name);
-      EXPECT_TRUE(result.ran) << name << ": " << result.reason;
+      EXPECT_TRUE(result.was_run) << name << ": " << result.reason;
       EXPECT_NE(result.verdict, CheckVerdict::inconsistent) << name << ": " << result.finding;
       EXPECT_THAT(result.finding, Not(HasSubstr("nan"))) << name;
-      EXPECT_FALSE(result.cannot_see.empty()) << name;
+      EXPECT_FALSE(result.limitations.empty()) << name;
       EXPECT_FALSE(result.columns.empty()) << name;
     }
   }
@@ -357,7 +357,7 @@ TEST_F(CheckTest, SpeedRunDetectsSpeedDependentTerm) {
 TEST_F(CheckTest, MissingInputsAreReported) {
   const Checks checks = check({fly(head + aloft, 1)}, first_model());
   for (const CheckResult& result : checks.results) {
-    if (result.ran) continue;
+    if (result.was_run) continue;
     EXPECT_FALSE(result.reason.empty()) << result.name;
     EXPECT_TRUE(result.finding.empty()) << result.name;
   }
@@ -379,7 +379,7 @@ TEST_F(CheckTest, SingleLegIsReported) {
       "legs.toml");
   const std::string text = head + aloft + leg("level", "duration = 600");
   const CheckResult result = named(check({fly(text, 1)}, first_model(), options), "reverse-heading");
-  EXPECT_FALSE(result.ran);
+  EXPECT_FALSE(result.was_run);
   EXPECT_THAT(result.reason, HasSubstr("a single leg"));
 }
 
@@ -387,12 +387,12 @@ TEST_F(CheckTest, VetoedLegsAreNotUsed) {
   CheckOptions options;
   const fs::path flight = fly(head + aloft + leg("reverse-heading", "speed = 118"), 1);
   const Checks found = check({flight}, first_model());
-  ASSERT_TRUE(named(found, "reverse-heading").ran);
+  ASSERT_TRUE(named(found, "reverse-heading").was_run);
   std::string text =
       "format = \"pcor-intervals/1\"\n[[veto]]\nregime = \"reverse heading\"\nbegin = "
       "\"20:00:00\"\nend = \"23:00:00\"\n";
   options.mask.intervals = read_intervals_text(text, "legs.toml");
-  EXPECT_FALSE(named(check({flight}, first_model(), options), "reverse-heading").ran);
+  EXPECT_FALSE(named(check({flight}, first_model(), options), "reverse-heading").was_run);
 }
 
 TEST_F(CheckTest, RefusesDuplicateAndMissingFlights) {
@@ -419,13 +419,13 @@ TEST_F(CheckTest, ReportTitleCountsInconclusiveChecks) {
   for (const CheckVerdict verdict : {CheckVerdict::consistent, CheckVerdict::inconclusive}) {
     CheckResult& result = checks.results.emplace_back();
     result.name = "layers";
-    result.ran = true;
+    result.was_run = true;
     result.verdict = verdict;
     result.key.value = 0.223;
     result.key.standard_error = 0.007;
   }
   EXPECT_THAT(check_report(checks).title, testing::AllOf(HasSubstr("1 of 2"), HasSubstr("pressures")));
-  checks.results[0].ran = false;
+  checks.results[0].was_run = false;
   EXPECT_THAT(summary_of(checks),
               testing::AllOf(HasSubstr("1 not run"), HasSubstr("layers +0.223 +- 0.007")));
 }
@@ -438,9 +438,9 @@ TEST_F(CheckTest, UncorrectedPairDoesNotTestTheStaticPressure) {
   options.second->fits.clear();
   const CheckResult result = named(
       check({fly(head + aloft + repeated(manoeuvres, 3), 1)}, first_model(), options), "static-pressure");
-  ASSERT_TRUE(result.ran) << result.reason;
+  ASSERT_TRUE(result.was_run) << result.reason;
   EXPECT_NE(result.verdict, CheckVerdict::inconsistent);
-  EXPECT_FALSE(result.withheld.empty());
+  EXPECT_FALSE(result.inconclusive_reason.empty());
   EXPECT_THAT(result.finding, HasSubstr(fmt::format("rms {:.3f} hPa", result.number("rms_hpa"))));
 }
 
@@ -452,11 +452,11 @@ TEST_F(CheckTest, RunsOnARealFlight) {
   const fs::path flight = fs::path(folder) / "GOTEX-rf06-C130-2004.nc";
   const Checks checks = check({flight}, std::nullopt);
   const CheckResult total = named(checks, "total-pressure");
-  ASSERT_TRUE(total.ran) << total.reason;
+  ASSERT_TRUE(total.was_run) << total.reason;
   EXPECT_NEAR(total.number("slope"), 1.0, 0.001);  // 0.7 hPa over the envelope
   EXPECT_LT(std::abs(total.number("mean_difference_hpa")), 0.3);
   for (const CheckResult& result : checks.results)
-    EXPECT_NE(result.ran, !result.reason.empty()) << result.name;
+    EXPECT_NE(result.was_run, !result.reason.empty()) << result.name;
 }
 
 }  // namespace

@@ -63,15 +63,15 @@ const std::string cloud =
 
 TEST(LamsTemperatureCheck, AgreesWithoutErrors) {
   const CheckResult result = check_lams_temperature(one_flight(""));
-  ASSERT_TRUE(result.ran) << result.reason;
+  ASSERT_TRUE(result.was_run) << result.reason;
   EXPECT_NEAR(result.number("offset_k"), 0.0, 3.0 * result.number("offset_stderr_k"));
   EXPECT_EQ(result.verdict, CheckVerdict::consistent);
-  EXPECT_THAT(result.cannot_see, HasSubstr("sample by sample"));
+  EXPECT_THAT(result.limitations, HasSubstr("sample by sample"));
 }
 
 TEST(LamsTemperatureCheck, DetectsAWarmThermometer) {
   const CheckResult result = check_lams_temperature(one_flight(warm_thermometer));
-  ASSERT_TRUE(result.ran);
+  ASSERT_TRUE(result.was_run);
   // 1.5 K of recovery temperature are 1.5/(1 + 0.2 r M^2) K of ambient, with M = 0.33.
   EXPECT_NEAR(result.number("offset_k"), -1.47, 3.0 * result.number("offset_stderr_k") + 0.01);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
@@ -79,7 +79,7 @@ TEST(LamsTemperatureCheck, DetectsAWarmThermometer) {
 
 TEST(LamsTemperatureCheck, CloudSamplesHaveASeparateOffset) {
   const CheckResult result = check_lams_temperature(one_flight(cloud));
-  ASSERT_TRUE(result.ran);
+  ASSERT_TRUE(result.was_run);
   // A thermometer that reads 2 K low when wet, and dries within 10 s.
   EXPECT_GT(result.number("cloud_offset_k"), 1.2);
   EXPECT_LT(std::abs(result.number("offset_k")), 0.5);
@@ -115,7 +115,7 @@ TEST(LamsTemperatureCheck, FlightsOfAnotherRecordIntervalAreNotUsed) {
 
 TEST(LamsTemperatureCheck, IsNotRunWithoutALaser) {
   const CheckResult result = check_lams_temperature(one_flight("", false));
-  EXPECT_FALSE(result.ran);
+  EXPECT_FALSE(result.was_run);
   EXPECT_THAT(result.reason, HasSubstr("laser"));
 }
 

@@ -31,17 +31,17 @@ CheckedFlight climb_and_descent(double too_warm) {
 
 TEST(LayersCheck, CorrectThermometerPasses) {
   const CheckResult result = check_layers({climb_and_descent(0.0)});
-  ASSERT_TRUE(result.ran) << result.reason;
+  ASSERT_TRUE(result.was_run) << result.reason;
   // One flight, with the usual errors of delta-p, does not detect 0.3 K at two standard errors.
   EXPECT_EQ(result.verdict, CheckVerdict::inconclusive);
   EXPECT_EQ(result.number("layers"), 8.0);
   EXPECT_NEAR(result.number("offset_k"), 0.0, 0.01);
-  EXPECT_THAT(result.cannot_see, HasSubstr("delta-p"));
+  EXPECT_THAT(result.limitations, HasSubstr("delta-p"));
 }
 
 TEST(LayersCheck, FindsAnOffsetBeyondItsError) {
   const CheckResult result = check_layers({climb_and_descent(2.0)});
-  ASSERT_TRUE(result.ran);
+  ASSERT_TRUE(result.was_run);
   EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
   EXPECT_NEAR(result.number("offset_k"), -2.0, 0.01);
   EXPECT_THAT(result.finding, HasSubstr("-2.00"));
@@ -77,7 +77,7 @@ TEST(LayersCheck, FlightWithoutHeightIsSkippedAndReported) {
   CheckedFlight without = climb_and_descent(0.0);
   without.air.height.clear();
   const CheckResult result = check_layers({without, climb_and_descent(0.0)});
-  ASSERT_TRUE(result.ran);
+  ASSERT_TRUE(result.was_run);
   EXPECT_THAT(result.notes, testing::Contains(test::Says("GPS height")));
   // Pictures have a value for every record of all flights.
   for (const ReportColumn& column : result.columns)

@@ -50,7 +50,7 @@ void expect_right(const Nuisance& nuisance, const std::string& what) {
     const RedundantFit fit = fit_of(two_systems(static_cast<unsigned>(s), nuisance));
     difference += std::pow(fit.difference.value / fit.difference.error, 2) / static_cast<double>(seeds);
     slope += std::pow(fit.across.value / fit.across.error, 2) / static_cast<double>(seeds);
-    for (const pcor::TestStatistic& number : judged_of(fit, size_that_matters))
+    for (const pcor::TestStatistic& number : test_statistics_of(fit, size_that_matters))
       if (number.verdict == pcor::CheckVerdict::inconsistent) ++inconsistent;
   }
   std::cout << what << ": rms of the scores of difference and slope " << std::sqrt(difference) << ", "
@@ -108,7 +108,7 @@ TEST(RedundantFit, FewSamplesAtOneEndDoNotDecide) {
   }
   const RedundantFit fit = fit_of(both);
   constexpr double size_that_matters = 0.3;  // hPa
-  for (const pcor::TestStatistic& number : judged_of(fit, size_that_matters))
+  for (const pcor::TestStatistic& number : test_statistics_of(fit, size_that_matters))
     EXPECT_EQ(number.verdict, pcor::CheckVerdict::consistent) << number.value;
 }
 

@@ -47,7 +47,7 @@ std::vector<double> white(std::size_t count, double rms, unsigned seed) {
 
 TEST(SpectrumCheck, FindsTheFloorOfWhiteNoise) {
   const CheckResult result = check_spectrum({with_defect(white(8000, 0.2, 1))});
-  ASSERT_TRUE(result.ran) << result.reason;
+  ASSERT_TRUE(result.was_run) << result.reason;
   // Three standard errors as stated, which must themselves be small: a thousand independent values and more.
   EXPECT_NEAR(result.number("floor_hpa"), 0.2, 3.0 * result.number("floor_stderr_hpa"));
   EXPECT_LT(result.number("floor_stderr_hpa"), 0.01);
@@ -79,7 +79,7 @@ std::vector<double> falling(double step) {
 
 TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
   const CheckResult result = check_spectrum({with_defect(falling(0.02))});
-  ASSERT_TRUE(result.ran);
+  ASSERT_TRUE(result.was_run);
   EXPECT_LT(result.number("slope"), -1.5);
   EXPECT_THAT(result.finding, HasSubstr("still falls"));
 }
@@ -87,7 +87,7 @@ TEST(SpectrumCheck, FallingTurbulenceSpectrumIsReported) {
 // Where the spectrum does not flatten, its power is an upper limit of the noise, which contradicts nothing.
 TEST(SpectrumCheck, TurbulenceAboveTheLimitIsNoEvidenceOfNoise) {
   const CheckResult result = check_spectrum({with_defect(falling(4.0))});
-  ASSERT_TRUE(result.ran) << result.reason;
+  ASSERT_TRUE(result.was_run) << result.reason;
   EXPECT_GT(result.number("floor_hpa"), 0.3);
   EXPECT_NE(result.verdict, CheckVerdict::inconsistent);
 }
@@ -121,7 +121,7 @@ TEST(SpectrumCheck, ReasonForNoResultIsReported) {
   std::vector<double> holes = white(4000, 0.2, 5);
   for (std::size_t i = 0; i < holes.size(); i += 200) holes[i] = std::numeric_limits<double>::quiet_NaN();
   const CheckResult result = check_spectrum({with_defect(holes)});
-  EXPECT_FALSE(result.ran);
+  EXPECT_FALSE(result.was_run);
   EXPECT_THAT(result.reason, HasSubstr("gap"));
 }
 

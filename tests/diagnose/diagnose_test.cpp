@@ -148,7 +148,7 @@ void expect_coefficient(const Finding& finding, double truth) {
 TEST(Diagnose, CompleteModelIsSilent) {
   for (unsigned seed = 301; seed <= 304; ++seed) {
     const Diagnosis diagnosis = diagnose({simulated_flight("c130-eq18", seed)});
-    EXPECT_EQ(diagnosis.verdict, Verdict::silent) << seed;
+    EXPECT_EQ(diagnosis.verdict, Verdict::none_detected) << seed;
     EXPECT_THAT(diagnosis.findings, IsEmpty());
     EXPECT_FALSE(diagnosis.unexplained.significant);
     EXPECT_GT(diagnosis.candidates, 25U);
@@ -166,7 +166,7 @@ TEST(Diagnose, CompleteModelIsSilent) {
 }
 
 TEST(Diagnose, ShortFlightIsSilent) {
-  EXPECT_EQ(diagnose({simulated_flight("c130-short", 311)}).verdict, Verdict::silent);
+  EXPECT_EQ(diagnose({simulated_flight("c130-short", 311)}).verdict, Verdict::none_detected);
 }
 
 TEST(Diagnose, FindsALagOfTheStaticLine) {
@@ -299,7 +299,7 @@ TEST(Diagnose, TheShapeOfAnAddedEffectIsUncertain) {
 TEST(Diagnose, FormulaWithoutValuesStatesReason) {
   const Diagnosis diagnosis =
       diagnose({simulated_flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
-  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
+  EXPECT_EQ(diagnosis.verdict, Verdict::none_detected);
   EXPECT_THAT(diagnosis.not_testable,
               Contains(AllOf(Field(&pcor::NotTestable::effect, "try-1"),
                              Field(&pcor::NotTestable::reason, HasSubstr("impossible")))));
@@ -502,7 +502,7 @@ TEST(Diagnose, FrozenSensorOfFurtherReferenceIsRejected) {
   }
   const Diagnosis diagnosis = pcor::diagnose({path}, laser_model(), laser_and_total());
   EXPECT_THAT(diagnosis.notes, Contains(pcor::test::Says("PSFRD is frozen")));
-  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
+  EXPECT_EQ(diagnosis.verdict, Verdict::none_detected);
 }
 
 // To the laser an offset of the thermometer is a change of the law; to the heights of its climbs it is not.
@@ -551,7 +551,7 @@ TEST(Diagnose, CompleteModelAgainstHeightsIsSilent) {
 TEST(Diagnose, WindAndLaserAreUsedTogether) {
   const Diagnosis diagnosis = pcor::diagnose({climbs(394, 0.0)}, laser_model(),
                                              {pcor::wind_reference(laser_model()), pcor::lams_reference()});
-  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
+  EXPECT_EQ(diagnosis.verdict, Verdict::none_detected);
   EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS"));
 }
 

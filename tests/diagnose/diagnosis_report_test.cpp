@@ -175,9 +175,9 @@ Diagnosis unexplained() {
   return diagnosis;
 }
 
-Diagnosis silent() {
+Diagnosis none_detected() {
   Diagnosis diagnosis = unexplained();
-  diagnosis.verdict = Verdict::silent;
+  diagnosis.verdict = Verdict::none_detected;
   diagnosis.unexplained = {};
   return diagnosis;
 }
@@ -185,7 +185,7 @@ Diagnosis silent() {
 Improvement improvement() {
   Improvement made;
   made.holdout_is_flights = true;
-  made.why_stopped = "no further effect exceeds the threshold";
+  made.stop_explanation = "no further effect exceeds the threshold";
   made.steps.resize(3);
   ImproveStep& foot = made.steps[0];
   foot.rms_train = 0.196;
@@ -214,7 +214,7 @@ Improvement improvement() {
   top.aliases.clear();
   top.rms_holdout = 0.12;
   top.terms = 5;
-  top.diagnosis = silent();
+  top.diagnosis = none_detected();
   made.fit.parameters = {{"static-beta-odd.b1", "1", 0.0, -0.00169, 0.00011, true, false, 1}};
   made.model.model.effects = {sideslip_finding().effect,
                               {"ENGTRQ-trace", {0.003}, {"k"}, "k * (ENGTRQ - 60)"}};
@@ -406,13 +406,13 @@ TEST(DiagnosisReport, WhatIfHasTheNoiseOfTheReport) {
       std::holds_alternative<BinnedPanel>(diagnosis_report(diagnosis, named_model(), &what_if).items.front()))
       << "the residual against the inputs of the first finding";
   diagnosis.findings.clear();
-  diagnosis.verdict = Verdict::silent;
+  diagnosis.verdict = Verdict::none_detected;
   EXPECT_EQ(panel_of().noise, 0.081);
   EXPECT_EQ(panel_of().noise_label, "noise");
 }
 
 TEST(DiagnosisReport, SilentDiagnosisListsUpperLimits) {
-  const Report report = diagnosis_report(silent(), named_model());
+  const Report report = diagnosis_report(none_detected(), named_model());
   EXPECT_EQ(report.title, "No missing effect is detectable on these flights");
   EXPECT_THAT(report.summary, Contains(HasSubstr("41")));
   EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
@@ -423,24 +423,24 @@ TEST(DiagnosisReport, SilentDiagnosisListsUpperLimits) {
 }
 
 TEST(DiagnosisReport, FlightsThatDetectNoUsualSizeCannotTestTheModel) {
-  Diagnosis silent;
-  silent.threshold = 14.3;
-  silent.limits.resize(4);  // the last one has no usual size
-  const auto set = [&silent](double first, double second, double third) {
-    silent.limits[0].chi2_at_usual_size = first;
-    silent.limits[1].chi2_at_usual_size = second;
-    silent.limits[2].chi2_at_usual_size = third;
+  Diagnosis none_detected;
+  none_detected.threshold = 14.3;
+  none_detected.limits.resize(4);  // the last one has no usual size
+  const auto set = [&none_detected](double first, double second, double third) {
+    none_detected.limits[0].chi2_at_usual_size = first;
+    none_detected.limits[1].chi2_at_usual_size = second;
+    none_detected.limits[2].chi2_at_usual_size = third;
   };
   set(14.4, 500.0, 2.0);
-  EXPECT_EQ(detectable_at_usual_size(silent), (std::pair<std::size_t, std::size_t>(2, 3)));
-  const std::string most = verdict_text(silent);
+  EXPECT_EQ(detectable_at_usual_size(none_detected), (std::pair<std::size_t, std::size_t>(2, 3)));
+  const std::string most = verdict_text(none_detected);
   set(14.2, 14.4, 2.0);
-  EXPECT_EQ(detectable_at_usual_size(silent), (std::pair<std::size_t, std::size_t>(1, 3)));
-  const std::string few = verdict_text(silent);
+  EXPECT_EQ(detectable_at_usual_size(none_detected), (std::pair<std::size_t, std::size_t>(1, 3)));
+  const std::string few = verdict_text(none_detected);
   EXPECT_THAT(few, HasSubstr("1 of 3"));
   set(14.2, 0.0, 2.0);
-  EXPECT_EQ(detectable_at_usual_size(silent), (std::pair<std::size_t, std::size_t>(0, 3)));
-  const std::string none = verdict_text(silent);
+  EXPECT_EQ(detectable_at_usual_size(none_detected), (std::pair<std::size_t, std::size_t>(0, 3)));
+  const std::string none = verdict_text(none_detected);
   EXPECT_NE(most, few);
   EXPECT_EQ(none.find(most), std::string::npos);
 }
@@ -462,7 +462,7 @@ TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
   Finding& finding = diagnosis.findings.front();
   finding.estimates = {{"b1", "1", nan, nan, 0.0}, {"b2", "hPa", 1.0, nan, nan}};
   finding.worst = finding.p_value = finding.rms_before = finding.rms_after = finding.events = nan;
-  finding.aliases.front().size_to_usual = infinity;
+  finding.aliases.front().relative_size = infinity;
   diagnosis.noise_rms = diagnosis.residual_rms = diagnosis.residual_rms_held_out = nan;
   for (FlightDiagnosis& one : diagnosis.flights) {
     for (std::vector<double>* values : {&one.mach, &one.sideslip, &one.evidence[0], &one.traced, &one.drift})

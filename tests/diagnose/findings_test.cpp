@@ -10,35 +10,36 @@ using pcor::Finding;
 namespace {
 
 /// One finding. @param gain decrease of chi2 of held-out parts, with a standard error of 10
-Diagnosis with_finding(const char* effect, double times_usual, double gain) {
+Diagnosis with_finding(const char* effect, double relative_size, double gain) {
   Diagnosis diagnosis;
   Finding& finding = diagnosis.findings.emplace_back();
   finding.effect.id = effect;
-  finding.times_usual = times_usual;
-  finding.gain = gain;
-  finding.gain_error = 10.0;
+  finding.relative_size = relative_size;
+  finding.chi2_reduction = gain;
+  finding.chi2_reduction_error = 10.0;
   return diagnosis;
 }
 
 }  // namespace
 
 TEST(DoubtBySize, EffectOfImpossibleSizeHasAnUnknownErrorAsRival) {
-  for (const auto& [times_usual, gain, is_doubted] :
+  for (const auto& [relative_size, gain, is_doubted] :
        {std::tuple{19.0, 10.0, false}, {21.0, 10.0, true}, {98.0, 29.0, true}, {98.0, 31.0, false}}) {
-    Diagnosis diagnosis = with_finding("flaps-gear", times_usual, gain);
+    Diagnosis diagnosis = with_finding("flaps-gear", relative_size, gain);
     pcor::internal::doubt_by_size(diagnosis);
-    EXPECT_EQ(diagnosis.findings[0].rival.empty(), !is_doubted) << times_usual << ' ' << gain;
+    EXPECT_EQ(diagnosis.findings[0].rival.empty(), !is_doubted) << relative_size << ' ' << gain;
     EXPECT_EQ(diagnosis.notes.empty(), !is_doubted);
   }
 }
 
 // A wind that depends on the place is the same in held-out parts.
 TEST(DoubtByAtmosphere, EffectOfImpossibleSizeMayBeTheAtmosphereEvenIfItPredicts) {
-  for (const auto& [times_usual, gain, is_doubted] :
+  for (const auto& [relative_size, gain, is_doubted] :
        {std::tuple{19.0, 31.0, false}, {21.0, 31.0, true}, {1.0, 29.0, true}}) {
-    Diagnosis diagnosis = with_finding("qcf-gain", times_usual, gain);
+    Diagnosis diagnosis = with_finding("qcf-gain", relative_size, gain);
     pcor::internal::doubt_by_atmosphere(diagnosis);
-    EXPECT_EQ(diagnosis.findings[0].rival, is_doubted ? "the atmosphere" : "") << times_usual << ' ' << gain;
+    EXPECT_EQ(diagnosis.findings[0].rival, is_doubted ? "the atmosphere" : "")
+        << relative_size << ' ' << gain;
     EXPECT_EQ(diagnosis.notes.empty(), !is_doubted);
   }
 }
@@ -57,7 +58,7 @@ TEST(DoubtByAtmosphere, EffectThatIncreasesTheHeldOutRmsMayBeTheAtmosphere) {
 
 TEST(DoubtBySize, KnownRivalIsKept) {
   Diagnosis diagnosis;
-  diagnosis.findings.emplace_back().times_usual = 50.0;
+  diagnosis.findings.emplace_back().relative_size = 50.0;
   diagnosis.findings[0].rival = "the atmosphere";
   pcor::internal::doubt_by_size(diagnosis);
   EXPECT_EQ(diagnosis.findings[0].rival, "the atmosphere");

@@ -108,7 +108,7 @@ TEST(MeanSteps, OneFlightGivesNoSteps) { EXPECT_EQ(FlightsWithSteps({0.3}, 3).st
 // A drift of that size makes means differ as much.
 TEST(MeanSteps, DriftExplainsAllSteps) {
   FlightsWithSteps flights({0.1, -0.1}, 4);
-  flights.noise.slow = {0.0, 0.0, 0.0, 0.2};
+  flights.noise.drift_component_rms = {0.0, 0.0, 0.0, 0.2};
   EXPECT_GT(flights.steps()[1].p_value, 0.05);
 }
 

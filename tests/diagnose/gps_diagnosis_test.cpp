@@ -120,7 +120,7 @@ TEST(GpsDiagnosis, CompleteModelIsSilent) {
   for (const bool with_height : {false, true}) {
     const pcor::Diagnosis diagnosis =
         pcor::diagnose({two_hour_flight(4)}, laser_model(), references_of(with_height));
-    EXPECT_EQ(diagnosis.verdict, pcor::Verdict::silent);
+    EXPECT_EQ(diagnosis.verdict, pcor::Verdict::none_detected);
   }
 }
 
@@ -142,7 +142,7 @@ TEST(GpsDiagnosis, FindsHiddenEffect) {
   const pcor::CoefficientEstimate& estimate = diagnosis.findings[0].estimates.front();
   // An effect of 5 hPa is not linear: the first step of the iterations of a refit is up to 15 % too long.
   EXPECT_NEAR(estimate.value, 0.01, 0.0015);
-  EXPECT_GT(diagnosis.findings[0].gain, 2.0 * diagnosis.findings[0].gain_error);
+  EXPECT_GT(diagnosis.findings[0].chi2_reduction, 2.0 * diagnosis.findings[0].chi2_reduction_error);
 }
 
 TEST(GpsDiagnosis, LaserAndWindFindOneEffectOnly) {

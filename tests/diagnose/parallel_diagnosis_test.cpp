@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "diagnose/tried_formula.hpp"
-#include "parallel/packed.hpp"
-#include "residuals/packed_residuals.hpp"
+#include "parallel/serialization.hpp"
+#include "residuals/serialization.hpp"
 #include "support/error_of.hpp"
 #include "support/short_flight.hpp"
 #include "support/temporary_directory.hpp"
@@ -49,7 +49,7 @@ void serialize(Archive& archive, pcor::WhatIfFlight& flight) {
 namespace pcor {
 namespace {
 
-using internal::packed;
+using internal::serialized;
 using test::laser_model;
 using test::run_with_communicator;
 using test::scenario_text;
@@ -81,20 +81,20 @@ std::string beside_json(const Diagnosis& diagnosis) {
   std::vector<double> numbers;
   std::vector<std::string> held;
   for (const Finding& finding : diagnosis.findings) {
-    numbers.insert(numbers.end(), {finding.gain, finding.gain_error, finding.worst_time,
+    numbers.insert(numbers.end(), {finding.chi2_reduction, finding.chi2_reduction_error, finding.worst_time,
                                    static_cast<double>(finding.is_alike)});
-    held.push_back(packed(finding.evidence));
-    held.insert(held.end(), finding.held.begin(), finding.held.end());
+    held.push_back(serialized(finding.evidence));
+    held.insert(held.end(), finding.fixed.begin(), finding.fixed.end());
     for (const Alias& alias : finding.aliases) {
       const std::vector<double>& parameters = alias.correction.parameters;
       numbers.insert(numbers.end(), {alias.probability, static_cast<double>(alias.is_alike)});
       numbers.insert(numbers.end(), parameters.begin(), parameters.end());
-      held.insert(held.end(), alias.held.begin(), alias.held.end());
+      held.insert(held.end(), alias.fixed.begin(), alias.fixed.end());
     }
   }
   for (const CoefficientEstimate& own : diagnosis.own)
     numbers.insert(numbers.end(), {own.value, own.standard_error});
-  return packed(numbers) + packed(held) + packed(diagnosis.flights);
+  return serialized(numbers) + serialized(held) + serialized(diagnosis.flights);
 }
 
 /// The JSON has all digits of its numbers, except of times, which it gives to the second.
@@ -163,12 +163,12 @@ TEST(ParallelWhatIf, ResultEqualsThatOfOneProcess) {
   for (const std::size_t size : {2U, 6U}) {
     run_team(size, [&](Communicator& comm) {
       const WhatIf found = of_team(comm, options);
-      EXPECT_EQ(packed(found.panel.coefficients), packed(alone.panel.coefficients));
-      EXPECT_EQ(packed(found.panel.weights), packed(alone.panel.weights));
-      EXPECT_EQ(packed(found.panel.alike), packed(alone.panel.alike));
-      EXPECT_EQ(packed(found.panel.outliers), packed(alone.panel.outliers));
-      EXPECT_EQ(packed(found.panel.held_out), packed(alone.panel.held_out));
-      EXPECT_EQ(packed(found.flights), packed(alone.flights));
+      EXPECT_EQ(serialized(found.panel.coefficients), serialized(alone.panel.coefficients));
+      EXPECT_EQ(serialized(found.panel.weights), serialized(alone.panel.weights));
+      EXPECT_EQ(serialized(found.panel.alike), serialized(alone.panel.alike));
+      EXPECT_EQ(serialized(found.panel.outliers), serialized(alone.panel.outliers));
+      EXPECT_EQ(serialized(found.panel.held_out), serialized(alone.panel.held_out));
+      EXPECT_EQ(serialized(found.flights), serialized(alone.flights));
     });
   }
   options.diagnose.series_of = {1};
@@ -176,9 +176,9 @@ TEST(ParallelWhatIf, ResultEqualsThatOfOneProcess) {
     const WhatIf shown = of_team(comm, options);
     ASSERT_EQ(shown.flights.size(), 2U);
     EXPECT_EQ(shown.flights[0].samples->name, alone.flights[1].samples->name);
-    EXPECT_EQ(packed(shown.flights[0]), packed(alone.flights[1]));
-    EXPECT_EQ(packed(shown.flights[1]), packed(alone.flights.back()));
-    EXPECT_EQ(packed(shown.panel.held_out), packed(alone.panel.held_out));
+    EXPECT_EQ(serialized(shown.flights[0]), serialized(alone.flights[1]));
+    EXPECT_EQ(serialized(shown.flights[1]), serialized(alone.flights.back()));
+    EXPECT_EQ(serialized(shown.panel.held_out), serialized(alone.panel.held_out));
   });
 }
 

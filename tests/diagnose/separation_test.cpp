@@ -36,7 +36,7 @@ Eigen::MatrixXd rows_of(Eigen::Index count, double correlation, unsigned seed = 
   return rows;
 }
 
-FlownRegime regime_of(Regime regime, const Eigen::MatrixXd& rows, double duration = 90.0) {
+RegimeStatistics regime_of(Regime regime, const Eigen::MatrixXd& rows, double duration = 90.0) {
   return {regime, duration, rows.transpose() * rows, "second.nc"};
 }
 
@@ -58,7 +58,7 @@ TEST(Separation, PredictedProbabilityEqualsSimulatedFrequency) {
   const Eigen::MatrixXd now = rows_of(200, 0.99, 1);
   const Eigen::MatrixXd more = rows_of(100, 0.95, 2);
   for (const double size : {0.8, 1.0}) {
-    const std::vector<FlownRegime> regimes{regime_of(Regime::circle, more)};
+    const std::vector<RegimeStatistics> regimes{regime_of(Regime::circle, more)};
     const Plan plan = best_plan(regimes, rivalry_of(now, size));
     ASSERT_NE(plan.regime, nullptr);
     Eigen::MatrixXd all(now.rows() + plan.repeats * more.rows(), columns);
@@ -81,17 +81,17 @@ TEST(Separation, RepeatsEqualLongerIntervals) {
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 0.99), 0.5);
   double before = 0.0;
   for (const int length : {100, 200, 400, 800}) {
-    const std::vector<FlownRegime> once{regime_of(Regime::circle, rows_of(length, 0.97, 4))};
+    const std::vector<RegimeStatistics> once{regime_of(Regime::circle, rows_of(length, 0.97, 4))};
     const Plan plan = best_plan(once, rivalry);
     const double power = std::min(plan.power, 0.95);  // power at which no more repeats are needed
     EXPECT_GE(power, before) << length;
     EXPECT_LE(power, 1.0);
     before = power;
     if (power < 0.95) continue;
-    FlownRegime joined = once.front();
+    RegimeStatistics joined = once.front();
     joined.information *= plan.repeats;
     joined.duration *= plan.repeats;
-    const std::vector<FlownRegime> of_joined{joined};
+    const std::vector<RegimeStatistics> of_joined{joined};
     const Plan longer = best_plan(of_joined, rivalry);
     EXPECT_EQ(longer.repeats, 1);
     EXPECT_DOUBLE_EQ(longer.power, plan.power);
@@ -103,8 +103,8 @@ TEST(Separation, RepeatsEqualLongerIntervals) {
 TEST(Separation, PlanUsesTheRegimeWithMostInformationPerTime) {
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 0.99), 1.0);
   const Eigen::MatrixXd rows = rows_of(200, 0.7, 5);
-  std::vector<FlownRegime> regimes{regime_of(Regime::climb, rows_of(800, 0.9, 6), 1200.0),
-                                   regime_of(Regime::circle, rows, 160.0)};
+  std::vector<RegimeStatistics> regimes{regime_of(Regime::climb, rows_of(800, 0.9, 6), 1200.0),
+                                        regime_of(Regime::circle, rows, 160.0)};
   Plan plan = best_plan(regimes, rivalry);
   ASSERT_EQ(plan.regime, &regimes[1]);
   EXPECT_THAT(advice_of(plan, "static-lag", neutral_effect("static-lag"), {"temp-lag"}).sentence,
@@ -116,7 +116,7 @@ TEST(Separation, PlanUsesTheRegimeWithMostInformationPerTime) {
 
 TEST(Separation, WorstRivalDeterminesThePlan) {
   const Eigen::MatrixXd rows = rows_of(100, 0.99);
-  const std::vector<FlownRegime> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
+  const std::vector<RegimeStatistics> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
   SeparationProblem rivalry = rivalry_of(rows, 1.0);
   const Plan of_one = best_plan(regimes, rivalry);
   rivalry.rests.push_back({base});  // a rival that imitates no effect
@@ -133,8 +133,8 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
   const ModelEffect lag = neutral_effect("static-lag");
   const std::string manoeuvre(effect_named("static-lag")->manoeuvre);
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
-  const std::vector<FlownRegime> alike{regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
-  for (const std::vector<FlownRegime>& regimes : {alike, std::vector<FlownRegime>{}}) {
+  const std::vector<RegimeStatistics> alike{regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
+  for (const std::vector<RegimeStatistics>& regimes : {alike, std::vector<RegimeStatistics>{}}) {
     const Plan plan = best_plan(regimes, rivalry);
     EXPECT_EQ(plan.regime, nullptr);
     EXPECT_EQ(plan.power, 0.0);
@@ -154,7 +154,7 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
 // More of the same regimes is not advised if the flights already nearly separate the effect.
 TEST(Separation, RegimeWithLittleInformationIsNotAdvised) {
   const Eigen::MatrixXd rows = rows_of(300, 0.9);
-  const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};
+  const std::vector<RegimeStatistics> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};
   for (const double size : {0.4, 0.5})
     EXPECT_EQ(best_plan(nothing, rivalry_of(rows, size)).regime, nullptr) << size;
 }
@@ -184,9 +184,9 @@ class FlownFlights {
                                      [this](Eigen::Index, Eigen::Index) { return normal_(engine_); }));
   }
 
-  std::vector<FlownRegime> regimes() {
-    scores_.share = FlightPartition(columns_.size());
-    return flown_regimes(scores_, [this](std::size_t f) { return FlightInBins{columns_[f], bins_[f]}; });
+  std::vector<RegimeStatistics> regimes() {
+    scores_.partition = FlightPartition(columns_.size());
+    return regime_statistics(scores_, [this](std::size_t f) { return FlightInBins{columns_[f], bins_[f]}; });
   }
 
   /// Rows between two times.
@@ -211,14 +211,14 @@ class FlownFlights {
 const Interval ground{Regime::ground, 0.0, 100.0};
 const Interval climb{Regime::climb, 100.0, 900.0};
 
-TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
+TEST(StatisticsOfRegimes, DurationAndInformationAreMeansOverIntervals) {
   FlownFlights flights;
   flights.fly("first.nc", {ground, {Regime::level, 100.0, 900.0}, {Regime::yaw_manoeuvre, 200.0, 320.0}});
   flights.fly("second.nc",
               {ground, {Regime::yaw_manoeuvre, 200.0, 300.0}, {Regime::yaw_manoeuvre, 500.0, 580.0}});
-  const std::vector<FlownRegime> regimes = flights.regimes();
+  const std::vector<RegimeStatistics> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 1U) << "neither on the ground nor level";
-  const FlownRegime& yaw = regimes[0];
+  const RegimeStatistics& yaw = regimes[0];
   EXPECT_EQ(yaw.regime, Regime::yaw_manoeuvre);
   EXPECT_DOUBLE_EQ(yaw.duration, 100.0);
   EXPECT_EQ(yaw.flight, "second.nc");
@@ -227,10 +227,10 @@ TEST(FlownRegimes, DurationAndInformationAreMeansOverIntervals) {
   EXPECT_TRUE(yaw.information.isApprox(sum / 3.0));
 }
 
-TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
+TEST(StatisticsOfRegimes, TurnWithinAClimbIsCountedSeparately) {
   FlownFlights flights;
   flights.fly("first.nc", {ground, climb, {Regime::turn, 200.0, 400.0}});
-  const std::vector<FlownRegime> regimes = flights.regimes();
+  const std::vector<RegimeStatistics> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 2U);
   EXPECT_EQ(regimes[0].regime, Regime::climb);
   EXPECT_DOUBLE_EQ(regimes[0].duration, 600.0);
@@ -239,19 +239,19 @@ TEST(FlownRegimes, TurnWithinAClimbIsCountedSeparately) {
       (regimes[0].information + regimes[1].information).isApprox(flights.information(0, 100.0, 900.0)));
 }
 
-TEST(FlownRegimes, RegimesWithoutSamplesAreOmitted) {
+TEST(StatisticsOfRegimes, RegimesWithoutSamplesAreOmitted) {
   FlownFlights flights;
   flights.fly("first.nc", {ground, climb, {Regime::circle, 700.0, 850.0}}, 600.0);
-  const std::vector<FlownRegime> regimes = flights.regimes();
+  const std::vector<RegimeStatistics> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 1U);
   EXPECT_EQ(regimes[0].regime, Regime::climb);
 }
 
-TEST(FlownRegimes, FlightWithTwoReferencesCountsOnce) {
+TEST(StatisticsOfRegimes, FlightWithTwoReferencesCountsOnce) {
   FlownFlights flights;
   flights.fly("first.nc", {climb});
   flights.fly("first.nc", {climb}, 1000.0, 1);
-  const std::vector<FlownRegime> regimes = flights.regimes();
+  const std::vector<RegimeStatistics> regimes = flights.regimes();
   ASSERT_EQ(regimes.size(), 1U);
   EXPECT_DOUBLE_EQ(regimes[0].duration, 800.0);
   EXPECT_TRUE(regimes[0].information.isApprox(flights.information(0, 100.0, 900.0) +

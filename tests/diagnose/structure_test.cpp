@@ -113,7 +113,7 @@ struct Flight {
 const Structure& strongest(const StructureTest& test) {
   return *std::max_element(
       test.structures().begin(), test.structures().end(),
-      [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
+      [](const Structure& a, const Structure& b) { return a.chi2_one_dof < b.chi2_one_dof; });
 }
 
 }  // namespace
@@ -172,8 +172,8 @@ TEST(VariableValues, QuantilesEqualThoseOfOneListForEachPartition) {
   std::sort(sorted.begin(), sorted.end());
   for (const std::size_t size : {1U, 2U, 3U}) {
     pcor::test::run_with_communicator(size, [&](pcor::Communicator& comm) {
-      const FlightPartition share(comm, {3, 2, 1});
-      const VariableValues known(share, [&values](std::size_t flight) {
+      const FlightPartition partition(comm, {3, 2, 1});
+      const VariableValues known(partition, [&values](std::size_t flight) {
         std::vector<double> own;  // the last flight has no values
         for (std::size_t i = 0; i < values.size(); ++i) {
           if (i * i % 2 == flight) own.push_back(values[i]);
@@ -253,7 +253,7 @@ TEST(StructureTest, FindsASineInOneOfFiftyVariables) {
     flight.residuals[0][i] += 0.3 * std::sin(0.6 * flight.variables[31][static_cast<std::size_t>(i)]);
   const StructureTest test = flight.test();
   EXPECT_EQ(strongest(test).name, "v31");
-  EXPECT_LT(test.chance_of(strongest(test).equivalent), 1e-3);
+  EXPECT_LT(test.p_value_of(strongest(test).chi2_one_dof), 1e-3);
   EXPECT_GT(strongest(test).r2, 0.05);
   EXPECT_LT(strongest(test).r2, 1.0);
 }
@@ -274,7 +274,7 @@ TEST(StructureTest, EstimatesTheSlopeOfALine) {
 TEST(StructureTest, SlopeEqualsGeneralisedLeastSquares) {
   Flight flight(200, 1, 3);
   // The drift of the model is included in full: no variable is more likely with less of it.
-  flight.noise.slow = {0.0, 0.4, 0.0, 0.0};
+  flight.noise.drift_component_rms = {0.0, 0.4, 0.0, 0.0};
   for (Eigen::Index i = 0; i < 200; ++i)
     flight.residuals[0][i] += std::sin(bin_step * static_cast<double>(i) / 100.0);
   const StructureTest test = flight.test();
@@ -285,7 +285,7 @@ TEST(StructureTest, SlopeEqualsGeneralisedLeastSquares) {
     for (Eigen::Index j = 0; j < rows; ++j)
       covariance(i, j) =
           0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory) +
-          0.16 * std::exp(-bin_step * std::abs(static_cast<double>(i - j)) / slow_times[1]);
+          0.16 * std::exp(-bin_step * std::abs(static_cast<double>(i - j)) / drift_time_constants[1]);
   }
   Eigen::MatrixXd columns(rows, 2);
   columns << Eigen::VectorXd::Ones(rows), as_vector(flight.variables[0]);
@@ -330,8 +330,8 @@ TEST_P(NoStructure, HasAFalseAlarmRateOfOnePercent) {
     flight.noise = find_noise(flight.bins, flight.columns, flight.residuals).model;
     const StructureTest test = flight.test();
     const StructureTest beside_the_best = flight.test(test.strong_structure());
-    if (test.chance_of(strongest(test).equivalent) < 0.01 ||
-        beside_the_best.chance_of(strongest(beside_the_best).equivalent) < 0.01)
+    if (test.p_value_of(strongest(test).chi2_one_dof) < 0.01 ||
+        beside_the_best.p_value_of(strongest(beside_the_best).chi2_one_dof) < 0.01)
       ++claims;
   }
   EXPECT_LE(claims, 4);
@@ -349,10 +349,10 @@ TEST(StructureTest, SlowVariableIsNotAbsorbedByDrift) {
     slow[i] = std::sin(0.004 * static_cast<double>(i)) + 0.5 * std::sin(0.013 * static_cast<double>(i));
   flight.residuals[0] += 0.25 * as_vector(slow);
   flight.noise = find_noise(flight.bins, flight.columns, flight.residuals).model;
-  ASSERT_TRUE(flight.noise.drifts());
+  ASSERT_TRUE(flight.noise.has_drift());
   const StructureTest test = flight.test();
   EXPECT_EQ(strongest(test).name, "v5");
-  EXPECT_LT(test.chance_of(strongest(test).equivalent), 0.01);
+  EXPECT_LT(test.p_value_of(strongest(test).chi2_one_dof), 0.01);
   EXPECT_NEAR(strongest(test).slope, 0.25, 4.0 * strongest(test).slope_error);
 }
 
@@ -365,8 +365,8 @@ TEST(StructureTest, StrongStructureIsExcludedFromTheNoise) {
   const StructureTest second = flight.test(first.strong_structure());
   EXPECT_EQ(strongest(second).name, "v7");
   EXPECT_EQ(second.structures()[7].gain, first.structures()[7].gain);
-  EXPECT_LT(second.chance_of(strongest(second).equivalent),
-            0.1 * first.chance_of(strongest(first).equivalent));
+  EXPECT_LT(second.p_value_of(strongest(second).chi2_one_dof),
+            0.1 * first.p_value_of(strongest(first).chi2_one_dof));
 }
 
 TEST(StructureTest, FindsAnAngle) {
@@ -379,7 +379,7 @@ TEST(StructureTest, FindsAnAngle) {
   const TestedVariable heading = one_flight("heading", flight.variables[2], 360.0);
   ASSERT_TRUE(test.add(heading));
   EXPECT_GT(test.structures()[0].gain, 50.0);
-  EXPECT_EQ(test.structures()[0].freedom, 4.0);
+  EXPECT_EQ(test.structures()[0].degrees_of_freedom, 4.0);
   EXPECT_EQ(test.structures()[0].slope, 0.0);
 }
 
@@ -389,7 +389,7 @@ TEST(StructureTest, ModelledEffectsAreNotStructure) {
   flight.columns[0].col(1) = as_vector(flight.variables[1]);
   flight.residuals[0] += 0.5 * flight.columns[0].col(1);
   const StructureTest test = flight.test();
-  EXPECT_GT(test.chance_of(strongest(test).equivalent), 0.01);
+  EXPECT_GT(test.p_value_of(strongest(test).chi2_one_dof), 0.01);
   EXPECT_EQ(test.structures()[1].line_gain, 0.0);
 }
 

@@ -165,7 +165,7 @@ TEST(GpsFit, HeightAloneDoesNotDetermineTheLevel) {
   EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
   EXPECT_GT(stated_by(result), 1.0);
   EXPECT_THAT(result.notes, testing::Not(Contains(pcor::test::Says("thermometer"))));
-  EXPECT_TRUE(result.worse.empty());
+  EXPECT_TRUE(result.rejection_reason.empty());
 }
 
 TEST(GpsFit, CombinesWithALaser) {

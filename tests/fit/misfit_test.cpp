@@ -61,7 +61,8 @@ TEST(Misfit, MissingRollGivesNoLoadFactor) {
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   const std::vector<Eigen::MatrixXd> states = binned_states(flights);
   constexpr Eigen::Index load_factor = 4 * 7;
-  const Eigen::MatrixXd bumps = MisfitBasis(set.share(), states)(states.front()).middleCols(load_factor, 7);
+  const Eigen::MatrixXd bumps =
+      MisfitBasis(set.partition(), states)(states.front()).middleCols(load_factor, 7);
   const Eigen::Index without = bumps.rows() / 2 - 1;  // a bin may lie across
   EXPECT_EQ(bumps.topRows(without).norm(), 0.0);
   EXPECT_GT(bumps.bottomRows(without).norm(), 1.0);
@@ -92,7 +93,7 @@ TEST(Misfit, IsNoNoiseOfAnyStaticPressure) {
   EXPECT_GT(find_misfit(flights, solution).left, 0.05);
   // One reference, given twice.
   const FitFlights& again = *flights.further().front();
-  EXPECT_EQ(again.noise(0).slow, flights.noise(0).slow);
+  EXPECT_EQ(again.noise(0).drift_component_rms, flights.noise(0).drift_component_rms);
   EXPECT_EQ(again.noise(0).common_level, flights.noise(0).common_level);
 }
 

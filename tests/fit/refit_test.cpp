@@ -428,7 +428,7 @@ TEST(Refit, ReportsHeldOutStatistics) {
   EXPECT_EQ(result.samples, 1800U);
   EXPECT_NEAR(result.flights[1].after.rms, 0.3, 0.03);  // the noise
   EXPECT_GT(result.flights[1].before.rms, 1.0);
-  EXPECT_EQ(result.worse, "");
+  EXPECT_EQ(result.rejection_reason, "");
 }
 
 // Of less than half a block, the expected bias was that of the coefficients alone.
@@ -490,7 +490,7 @@ TEST(Refit, BiasedHeldOutPartIsReported) {
   ASSERT_TRUE(part.has_value());
   EXPECT_TRUE(part->is_off());
   EXPECT_NEAR(std::abs(part->statistics.bias), 0.5, 0.1);  // the coefficients err by some hundredths
-  EXPECT_EQ(result.worse, part->text());
+  EXPECT_EQ(result.rejection_reason, part->text());
 }
 
 // The fit compensates an error of a fixed coefficient on all flights: it does not excuse a biased part.

@@ -35,7 +35,7 @@ std::vector<double> deviations(std::size_t memory) {
   task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   flights.measure_noise(task.start);
-  return set.share().of_each_flight<double>([&](std::size_t f) {
+  return set.partition().all_gather_flights<double>([&](std::size_t f) {
     const Eigen::VectorXd innovations =
         whitened(flights.residual(f, task.start), flights.bins(f), flights.noise(f), 0);
     return robust_standard_deviation({innovations.begin(), innovations.end()});

@@ -9,17 +9,17 @@
 namespace pcor::internal {
 namespace {
 
-TEST(FileInHand, IsTheLastFileRead) {
+TEST(CurrentInput, IsTheLastFileRead) {
   const std::filesystem::path outer = "outer.nc", inner = "inner.nc";
   EXPECT_EQ(current_input_path(), nullptr);
   EXPECT_EQ(current_input_seconds(), 0.0);
   {
-    const FileInHand first(outer);
+    const CurrentInput first(outer);
     EXPECT_STREQ(current_input_path(), "outer.nc");
-    { const FileInHand again(outer); }
+    { const CurrentInput again(outer); }
     EXPECT_FALSE(had_previous_input());
     {
-      const FileInHand second(inner);
+      const CurrentInput second(inner);
       EXPECT_STREQ(current_input_path(), "inner.nc");
       EXPECT_TRUE(had_previous_input());
     }
@@ -28,21 +28,21 @@ TEST(FileInHand, IsTheLastFileRead) {
   EXPECT_EQ(current_input_path(), nullptr);
 }
 
-TEST(FileInHand, MeasuresItsProcessingTime) {
+TEST(CurrentInput, MeasuresItsProcessingTime) {
   const std::filesystem::path path = "flight.nc";
-  const FileInHand in_hand(path);
+  const CurrentInput current(path);
   const double before = current_input_seconds();
   EXPECT_GE(before, 0.0);
   while (current_input_seconds() < before + 0.01) {
   }
-  const FileInHand again(path);
+  const CurrentInput again(path);
   EXPECT_LT(current_input_seconds(), 0.01) << "restarted";
 }
 
-TEST(FileInHand, WaitingBeginsWhenProcessingStops) {
+TEST(CurrentInput, WaitingBeginsWhenProcessingStops) {
   EXPECT_EQ(seconds_of_waiting(), 0.0);
   const std::filesystem::path path = "flight.nc";
-  const FileInHand in_hand(path);
+  const CurrentInput current(path);
   while (current_input_seconds() < 0.15) {
   }
   EXPECT_LT(seconds_of_waiting(), 0.01);

@@ -121,8 +121,8 @@ Diagnosis diagnosis(Verdict verdict, const std::vector<std::string>& findings = 
     Finding& finding = result.findings.emplace_back();
     finding.effect = neutral_effect(id);
     finding.title = "title of " + id;
-    finding.gain = 100.0;
-    finding.gain_error = 20.0;
+    finding.chi2_reduction = 100.0;
+    finding.chi2_reduction_error = 20.0;
   }
   return result;
 }
@@ -152,12 +152,12 @@ std::vector<std::string> effects(const ModelDefinition& model) {
 }
 
 TEST_F(Improve, StopsIfNoEffectIsMissing) {
-  Diagnosis silent = diagnosis(Verdict::silent);
-  silent.limits.resize(7);
-  for (UpperLimit& limit : silent.limits) limit.chi2_at_usual_size = silent.threshold + 1.0;
-  silent.limits[0].chi2_at_usual_size = 0.0;
-  const Improvement improvement = run({silent});
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("6 of 7")) << "diagnose prints the same numbers";
+  Diagnosis none_detected = diagnosis(Verdict::none_detected);
+  none_detected.limits.resize(7);
+  for (UpperLimit& limit : none_detected.limits) limit.chi2_at_usual_size = none_detected.threshold + 1.0;
+  none_detected.limits[0].chi2_at_usual_size = 0.0;
+  const Improvement improvement = run({none_detected});
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("6 of 7")) << "diagnose prints the same numbers";
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
   EXPECT_EQ(improvement.steps[0].terms, 2U);
@@ -172,7 +172,7 @@ TEST_F(Improve, JudgesAHeldOutFlightAsOneOfAll) {
     fit.flights.push_back(fit.flights.back());
     return fit;
   };
-  const Improvement improvement = run({diagnosis(Verdict::silent)});
+  const Improvement improvement = run({diagnosis(Verdict::none_detected)});
   const std::vector<HeldOutPart>& held_out = improvement.steps[0].diagnosis.held_out;
   ASSERT_EQ(held_out.size(), 2U);
   for (const HeldOutPart& part : held_out) EXPECT_EQ(part.parts, 2U);
@@ -180,13 +180,13 @@ TEST_F(Improve, JudgesAHeldOutFlightAsOneOfAll) {
 
 TEST_F(Improve, AddsAnIdentifiedEffect) {
   const Improvement improvement =
-      run({diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)}, {1.0, 0.5});
+      run({diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp", "static-lag"));
   EXPECT_THAT(improvement.steps[1].title, "title of static-lag");
   EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("tau = 0.25 +- 0.02 s"));
   EXPECT_EQ(improvement.steps[1].terms, 3U);
-  EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::silent);
+  EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::none_detected);
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
 }
 
@@ -201,10 +201,10 @@ TEST_F(Improve, ByGpsAloneAnEffectMustDifferFromZeroByThreeErrors) {
       return fit;
     };
     Diagnosis found = diagnosis(Verdict::identified, {"static-lag"});
-    Diagnosis silent = diagnosis(Verdict::silent);
+    Diagnosis none_detected = diagnosis(Verdict::none_detected);
     found.residual_rms_held_out = 1.0;
-    silent.residual_rms_held_out = 0.9;
-    EXPECT_EQ(run({found, silent}).steps.size(), is_added ? 2U : 1U) << error;
+    none_detected.residual_rms_held_out = 0.9;
+    EXPECT_EQ(run({found, none_detected}).steps.size(), is_added ? 2U : 1U) << error;
   }
 }
 
@@ -222,24 +222,25 @@ TEST_F(Improve, ByGpsAloneAFormulaIsComparedWithZero) {
   effect.parameter_names = {"k"};
   effect.parameters = {0.25};
   effect.formula = "k * mach";
-  found.findings[0].gain = 100.0;
-  found.findings[0].gain_error = 20.0;
-  EXPECT_THAT(added(run({found, diagnosis(Verdict::silent)}, {1.0, 0.5})), ElementsAre("", "try-1"));
+  found.findings[0].chi2_reduction = 100.0;
+  found.findings[0].chi2_reduction_error = 20.0;
+  EXPECT_THAT(added(run({found, diagnosis(Verdict::none_detected)}, {1.0, 0.5})), ElementsAre("", "try-1"));
 }
 
 TEST_F(Improve, ByGpsAloneAnEffectOfAnImpossibleSizeIsNotAdded) {
   Diagnosis found = diagnosis(Verdict::ambiguous, {"static-lag"});
-  for (const auto& [times_usual, by_gps, steps] :
+  for (const auto& [relative_size, by_gps, steps] :
        {std::tuple{19.0, true, 2U}, {21.0, true, 1U}, {21.0, false, 2U}}) {
     loop_.is_by_gps = by_gps;
-    found.findings[0].times_usual = times_usual;
-    EXPECT_EQ(run({found, diagnosis(Verdict::silent)}, {1.0, 0.5}).steps.size(), steps) << times_usual;
+    found.findings[0].relative_size = relative_size;
+    EXPECT_EQ(run({found, diagnosis(Verdict::none_detected)}, {1.0, 0.5}).steps.size(), steps)
+        << relative_size;
   }
 }
 
 TEST_F(Improve, AddsEachFindingInItsOwnStep) {
   EXPECT_THAT(added(run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
-                         diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::silent)},
+                         diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::none_detected)},
                         {1.0, 0.7, 0.5})),
               ElementsAre("", "static-lag", "static-mach"));
 }
@@ -250,7 +251,7 @@ TEST_F(Improve, ListsEffectsThatAreNotSeparable) {
   ambiguous.findings[0].aliases[0].effect = "temp-lag";
   ambiguous.findings[0].aliases[1].effect = "total-lag";
   ambiguous.findings[0].advice.sentence = "fly two climbs";
-  const Improvement improvement = run({ambiguous, diagnosis(Verdict::silent)}, {1.0, 0.5});
+  const Improvement improvement = run({ambiguous, diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   EXPECT_THAT(improvement.steps[1].aliases, ElementsAre("temp-lag", "total-lag"));
   EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("temp-lag, total-lag: fly two climbs"));
 }
@@ -262,14 +263,14 @@ TEST_F(Improve, DropsAnEffectThatRaisesTheHeldOutResidual) {
     EXPECT_THAT(added(improvement), ElementsAre(""));
     EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp"));
     EXPECT_EQ(improvement.stop_reason, StopReason::no_gain);
-    EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag"));
+    EXPECT_THAT(improvement.stop_explanation, HasSubstr("static-lag"));
     EXPECT_DOUBLE_EQ(improvement.fit.flights[1].after.rms, 1.0);
   }
 }
 
 TEST_F(Improve, RefusedFindingIsFollowedByTheOthers) {
   const Improvement improvement =
-      run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}), diagnosis(Verdict::silent)},
+      run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}), diagnosis(Verdict::none_detected)},
           {1.0, 1.1, 0.5});
   EXPECT_THAT(added(improvement), ElementsAre("", "static-mach"));
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
@@ -280,7 +281,7 @@ TEST_F(Improve, RefusedFindingIsFollowedByTheOthers) {
 TEST_F(Improve, RefusedFindingThatIsAddedLaterHasNoNote) {
   const Improvement improvement =
       run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
-           diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)},
+           diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::none_detected)},
           {1.0, 1.1, 0.7, 0.5});
   EXPECT_THAT(added(improvement), ElementsAre("", "static-mach", "static-lag"));
   EXPECT_THAT(improvement.fit.notes, testing::IsEmpty());
@@ -289,7 +290,7 @@ TEST_F(Improve, RefusedFindingThatIsAddedLaterHasNoNote) {
 TEST_F(Improve, FindingsOfTheLastDiagnosisAreTriedBeforeTheEnd) {
   const Improvement improvement =
       run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
-           diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::silent)},
+           diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::none_detected)},
           {1.0, 0.7, 0.8, 0.5});
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag", "static-mach2"));
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
@@ -297,10 +298,10 @@ TEST_F(Improve, FindingsOfTheLastDiagnosisAreTriedBeforeTheEnd) {
 
 TEST_F(Improve, RefusedFindingDoesNotCountAsAStep) {
   loop_.max_steps = 1;
-  EXPECT_THAT(
-      added(run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}), diagnosis(Verdict::silent)},
-                {1.0, 1.1, 0.5})),
-      ElementsAre("", "static-mach"));
+  EXPECT_THAT(added(run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
+                         diagnosis(Verdict::none_detected)},
+                        {1.0, 1.1, 0.5})),
+              ElementsAre("", "static-mach"));
 }
 
 /// A diagnosis that cannot separate two effects; the first is present with `probability`.
@@ -319,7 +320,7 @@ Diagnosis two_rivals(const std::string& one, const std::string& other, double pr
 TEST_F(Improve, ChoosesTheRivalOfMinimumExpectedError) {
   changes_ = {{"static-lag", 0.8}, {"total-lag", 1.2}};
   const Improvement improvement =
-      run({two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)}, {1.0, 0.5});
+      run({two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   const ImproveStep& step = improvement.steps[1];
   ASSERT_EQ(step.rivals.size(), 2U);
   EXPECT_EQ(step.rivals[0].effect, "static-lag");
@@ -335,7 +336,7 @@ TEST_F(Improve, ChoosesTheRivalOfMinimumExpectedError) {
 TEST_F(Improve, EqualRivalsKeepTheNamedEffect) {
   changes_ = {{"static-lag", 0.8}, {"total-lag", 0.81}};  // hPa, at a noise of 0.25
   const Improvement improvement =
-      run({two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)}, {1.0, 0.5});
+      run({two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   EXPECT_THAT(improvement.steps[1].rivals, testing::IsEmpty());
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp", "static-lag"));
 }
@@ -343,7 +344,7 @@ TEST_F(Improve, EqualRivalsKeepTheNamedEffect) {
 TEST_F(Improve, AppliesNoRivalIfAnotherMakesItHarmful) {
   changes_ = {{"static-lag", 0.8}, {"total-lag", -0.6}};
   const Improvement improvement =
-      run({two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::silent)}, {1.0, 0.5});
+      run({two_rivals("static-lag", "total-lag", 0.75), diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   EXPECT_EQ(improvement.steps[1].delivered, "");
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp"));
   EXPECT_NEAR(improvement.steps[1].rival_error, std::sqrt(0.75 * 0.64 + 0.25 * 0.36), 1e-9);
@@ -355,7 +356,7 @@ SurfaceOffer helpful_surface(const TrialModel& model) {
   offer.model = model;
   offer.compared.rms_before = 1.0;
   offer.compared.rms_after = 0.5;
-  offer.compared.gain = 100.0;
+  offer.compared.chi2_reduction = 100.0;
   return offer;
 }
 
@@ -369,7 +370,7 @@ TEST_F(Improve, SurfaceThatCannotBeFittedIsNotAdded) {
   const Improvement improvement = run({diagnosis(Verdict::unexplained)});
   EXPECT_EQ(improvement.steps.size(), 1U);
   EXPECT_EQ(improvement.model.model.effects.size(), 2U);
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("not determined"));
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("not determined"));
 }
 
 // Against other systems alone a surface is as probable on either.
@@ -435,9 +436,9 @@ TEST_F(Improve, RivalsThatCannotBeFittedTogetherAreNotApplied) {
 TEST_F(Improve, KeepsTheModelIfTheReferenceMayBeWrong) {
   const Improvement improvement = run({two_rivals("psfd-bias", "reference:psfd-bias", 0.6)});
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, AllOf(HasSubstr("psfd-bias"), HasSubstr("--trust-reference")));
+  EXPECT_THAT(improvement.stop_explanation, AllOf(HasSubstr("psfd-bias"), HasSubstr("--trust-reference")));
   EXPECT_EQ(improvement.stop_reason, StopReason::reference_system);
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("fly a yaw manoeuvre"));
 }
 
 // Shapes of nature differ from those of the catalogue, and then small differences of the likelihood are not
@@ -451,8 +452,9 @@ TEST_F(Improve, AnImprobableAliasOnTheOtherSystemCounts) {
 TEST_F(Improve, UninformativeHoldOutUsesFittedFlights) {
   held_out_tells_ = false;
   Diagnosis found = diagnosis(Verdict::identified, {"static-lag"});
-  EXPECT_THAT(added(run({found, diagnosis(Verdict::silent)}, {1.0, 0.5})), ElementsAre("", "static-lag"));
-  found.findings[0].gain = 10.0;
+  EXPECT_THAT(added(run({found, diagnosis(Verdict::none_detected)}, {1.0, 0.5})),
+              ElementsAre("", "static-lag"));
+  found.findings[0].chi2_reduction = 10.0;
   EXPECT_THAT(added(run({found}, {1.0, 0.5})), ElementsAre("")) << "less than two deviations";
 }
 
@@ -465,7 +467,7 @@ TEST_F(Improve, DropsAnEffectThatCannotBeFitted) {
   };
   const Improvement improvement = run({diagnosis(Verdict::identified, {"static-lag"})});
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, AllOf(HasSubstr("static-lag"), HasSubstr("tau and a0")));
+  EXPECT_THAT(improvement.stop_explanation, AllOf(HasSubstr("static-lag"), HasSubstr("tau and a0")));
 }
 
 TEST_F(Improve, UnfittableModelIsReported) {
@@ -477,21 +479,22 @@ TEST_F(Improve, UnfittableModelIsReported) {
 
 TEST_F(Improve, PartialFindingIsNotNamedAsCause) {
   const Improvement improvement =
-      run({diagnosis(Verdict::partial, {"static-lag"}), diagnosis(Verdict::silent)}, {1.0, 0.9});
+      run({diagnosis(Verdict::partial, {"static-lag"}), diagnosis(Verdict::none_detected)}, {1.0, 0.9});
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
   EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("not be the cause"));
 }
 
 TEST_F(Improve, TracesIfAPartialFindingDoesNotReduceTheResidual) {
   EXPECT_THAT(added(run({with_trace(diagnosis(Verdict::partial, {"static-lag"}), "ENGTRQ"),
-                         diagnosis(Verdict::silent)},
+                         diagnosis(Verdict::none_detected)},
                         {1.0, 0.995, 0.6})),
               ElementsAre("", "traced-engtrq"));
 }
 
 TEST_F(Improve, AddsAFormulaOfATracedVariable) {
   const Improvement improvement =
-      run({with_trace(diagnosis(Verdict::unexplained), "ENG_Trq2"), diagnosis(Verdict::silent)}, {1.0, 0.9});
+      run({with_trace(diagnosis(Verdict::unexplained), "ENG_Trq2"), diagnosis(Verdict::none_detected)},
+          {1.0, 0.9});
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-eng-trq2"));
   const ModelEffect& effect = improvement.model.model.effects.back();
   EXPECT_EQ(effect.formula, "k * (ENG_Trq2 - 48)");
@@ -504,7 +507,7 @@ TEST_F(Improve, AddsAFormulaOfATracedVariable) {
 TEST_F(Improve, ATracedVariableMustReduceTheResidual) {
   const Improvement improvement = run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.991});
   EXPECT_THAT(added(improvement), ElementsAre(""));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("traced-engtrq"));
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("traced-engtrq"));
 }
 
 TEST_F(Improve, AdvisesTheRoleOfATracedVariableAfterARejection) {
@@ -512,14 +515,14 @@ TEST_F(Improve, AdvisesTheRoleOfATracedVariableAfterARejection) {
   unnamed.unnamed_roles = {{"engine_torque", "ENGTRQ", "speedbrake-thrust"}};
   const Improvement improvement = run({unnamed}, {1.0, 0.991});
   EXPECT_EQ(improvement.stop_reason, StopReason::no_gain);
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("engine_torque = \"ENGTRQ\""));
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("engine_torque = \"ENGTRQ\""));
 }
 
 TEST_F(Improve, NeverAddsAnEffectTwice) {
   const Improvement improvement =
       run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.9, 0.8, 0.7});
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-engtrq"));
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("ENGTRQ"));
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("ENGTRQ"));
   EXPECT_EQ(run({diagnosis(Verdict::identified, {"static-qp"})}).stop_reason, StopReason::in_model);
 }
 
@@ -528,7 +531,7 @@ TEST_F(Improve, TracesOnlyOnRequest) {
   const Improvement improvement = run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")});
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_EQ(improvement.stop_reason, StopReason::unexplained);
-  EXPECT_THAT(improvement.why_stopped, AllOf(HasSubstr("climb"), HasSubstr("ENGTRQ")));
+  EXPECT_THAT(improvement.stop_explanation, AllOf(HasSubstr("climb"), HasSubstr("ENGTRQ")));
 }
 
 TEST_F(Improve, ReportsAResidualThatNoVariableExplains) {
@@ -536,7 +539,7 @@ TEST_F(Improve, ReportsAResidualThatNoVariableExplains) {
   unexplained.unexplained.variables.clear();
   const Improvement improvement = run({unexplained});
   EXPECT_EQ(improvement.stop_reason, StopReason::unexplained);
-  EXPECT_THAT(improvement.why_stopped, testing::Not(HasSubstr("ENGTRQ")));
+  EXPECT_THAT(improvement.stop_explanation, testing::Not(HasSubstr("ENGTRQ")));
 }
 
 TEST_F(Improve, StopsAfterTheMaximumNumberOfSteps) {
@@ -549,40 +552,41 @@ TEST_F(Improve, StopsAfterTheMaximumNumberOfSteps) {
 
 TEST_F(Improve, NoiseOfEachStepIsThatOfItsFit) {
   const Improvement improvement =
-      run({diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)}, {1.0, 0.5});
+      run({diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   EXPECT_DOUBLE_EQ(improvement.steps[0].noise_rms, 0.5);
   EXPECT_DOUBLE_EQ(improvement.steps[1].noise_rms, 0.25);
 }
 
 TEST_F(Improve, DegradedModelIsReportedAsWorse) {
   given_rms_ = 0.75;
-  EXPECT_THAT(run({diagnosis(Verdict::silent)}).worse, HasSubstr("1.3333"));
+  EXPECT_THAT(run({diagnosis(Verdict::none_detected)}).rejection_reason, HasSubstr("1.3333"));
   given_rms_ = 1.25;
-  const Improvement improvement = run({diagnosis(Verdict::silent)});
-  EXPECT_EQ(improvement.worse, "");
+  const Improvement improvement = run({diagnosis(Verdict::none_detected)});
+  EXPECT_EQ(improvement.rejection_reason, "");
   EXPECT_DOUBLE_EQ(improvement.given_rms_holdout, 1.25);
 }
 
 TEST_F(Improve, ModelThatFollowsTheFlightsButPredictsTheirPartsWorseIsReported) {
   loop_.has_holdout = false;
-  Diagnosis silent = diagnosis(Verdict::silent);
+  Diagnosis none_detected = diagnosis(Verdict::none_detected);
   for (const double given : {1.0, 1.1}) {  // the fit has 1.0
     given_rms_ = given;
-    const double before = run({silent}).given_rms_train;
+    const double before = run({none_detected}).given_rms_train;
     for (const double held_out : {1.24, 1.26}) {
-      silent.residual_rms_held_out = held_out * before;
-      EXPECT_EQ(run({silent}).worse.empty(), given == 1.0 || held_out < 1.25) << given << " " << held_out;
+      none_detected.residual_rms_held_out = held_out * before;
+      EXPECT_EQ(run({none_detected}).rejection_reason.empty(), given == 1.0 || held_out < 1.25)
+          << given << " " << held_out;
     }
   }
 }
 
 TEST_F(Improve, GivenModelWithoutResidualIsComparedByItsRefit) {
   given_rms_ = std::nan("");
-  EXPECT_EQ(run({diagnosis(Verdict::silent)}).worse, "");
+  EXPECT_EQ(run({diagnosis(Verdict::none_detected)}).rejection_reason, "");
   loop_.offer_surface = helpful_surface;
   const Improvement improvement = run({diagnosis(Verdict::unexplained)}, {1.0, 1.5});
   EXPECT_TRUE(std::isnan(improvement.given_rms_holdout));
-  EXPECT_THAT(improvement.worse, HasSubstr("1.5000"));
+  EXPECT_THAT(improvement.rejection_reason, HasSubstr("1.5000"));
 }
 
 TEST_F(Improve, UnknownRmsOfTheGivenModelIsOmitted) {
@@ -591,7 +595,7 @@ TEST_F(Improve, UnknownRmsOfTheGivenModelIsOmitted) {
     fit.rms_before = std::nan("");
     return fit;
   };
-  EXPECT_THAT(run({diagnosis(Verdict::silent)}).steps[0].learnt,
+  EXPECT_THAT(run({diagnosis(Verdict::none_detected)}).steps[0].learnt,
               AllOf(HasSubstr("0.9900"), testing::Not(HasSubstr("nan"))));
 }
 
@@ -604,23 +608,23 @@ TEST_F(Improve, HeldOutBiasPreventsSilentVerdict) {
     fit.flights.back().expected_bias = 0.03;
     return fit;
   };
-  const Improvement improvement = run({diagnosis(Verdict::silent)});
+  const Improvement improvement = run({diagnosis(Verdict::none_detected)});
   EXPECT_EQ(improvement.steps.back().diagnosis.verdict, Verdict::unexplained);
-  EXPECT_THAT(improvement.why_stopped, AllOf(HasSubstr("later.nc"), HasSubstr("+0.140 hPa"),
-                                             HasSubstr("0.272 hPa"), HasSubstr("+- 0.030 hPa")));
+  EXPECT_THAT(improvement.stop_explanation, AllOf(HasSubstr("later.nc"), HasSubstr("+0.140 hPa"),
+                                                  HasSubstr("0.272 hPa"), HasSubstr("+- 0.030 hPa")));
 }
 
 TEST_F(Improve, WithoutHeldOutFlightsCrossValidationDecides) {
   loop_.has_holdout = false;
   Diagnosis first = diagnosis(Verdict::identified, {"static-lag"});
-  Diagnosis second = diagnosis(Verdict::silent);
+  Diagnosis second = diagnosis(Verdict::none_detected);
   first.residual_rms_held_out = 0.8;
   second.residual_rms_held_out = 0.9;
   const Improvement improvement = run({first, second});
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_DOUBLE_EQ(improvement.steps[0].rms_holdout, 0.8);
   EXPECT_FALSE(improvement.holdout_is_flights);
-  EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag"));
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("static-lag"));
 }
 
 using Series = std::vector<double>;

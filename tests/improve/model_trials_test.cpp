@@ -59,7 +59,7 @@ TEST(Union, KeepsTheShapeOfAnAbsentEffect) {
 TEST(Trials, AModelComparedWithItselfIsEqual) {
   const std::vector<TrialFlight> flights = tried({{law()}, {law()}}, {lams_reference()});
   const TrialComparison same = comparison_of(flights, 0, 1, false);
-  EXPECT_EQ(same.gain, 0.0);
+  EXPECT_EQ(same.chi2_reduction, 0.0);
   EXPECT_EQ(same.rms_before, same.rms_after);
   EXPECT_FALSE(same.is_better() || same.is_worse());
   EXPECT_TRUE(std::isnan(comparison_of(flights, 0, 1, true).rms_before)) << "nothing is held out";
@@ -75,13 +75,13 @@ TEST(Trials, TrueModelIsBetterAndWrongModelIsWorse) {
 
 TEST(Trials, NoisyFurtherReferencesAreIgnored) {
   TrialComparison comparison;
-  comparison.gain = 97.0;
-  comparison.gain_error = 141.0;
+  comparison.chi2_reduction = 97.0;
+  comparison.chi2_reduction_error = 141.0;
   EXPECT_FALSE(comparison.is_better() || comparison.is_worse());
-  comparison.first_gain = 60.0;
-  comparison.first_gain_error = 12.0;
+  comparison.first_chi2_reduction = 60.0;
+  comparison.first_chi2_reduction_error = 12.0;
   EXPECT_TRUE(comparison.is_better());
-  comparison.gain = -400.0;
+  comparison.chi2_reduction = -400.0;
   EXPECT_TRUE(comparison.is_worse());
   EXPECT_FALSE(comparison.is_better());
 }

@@ -85,7 +85,7 @@ TEST(Inspect, MissingRoleStatesSearchedNamesAndConsequence) {
   ASSERT_THAT(inspection.missing, Contains(is("recovery_temperature")));
   for (const MissingRole& missing : inspection.missing) {
     if (missing.role != "recovery_temperature") continue;
-    EXPECT_THAT(missing.looked_for, Contains("TTX"));
+    EXPECT_THAT(missing.searched_names, Contains("TTX"));
     EXPECT_THAT(missing.cost, Not(IsEmpty()));
   }
   EXPECT_THAT(inspection.missing, Not(Contains(is("static_pressure"))));
@@ -109,7 +109,7 @@ TEST(Inspect, RoleThatTheModelDoesNotReadHasARemark) {
   ASSERT_TRUE(inspection.model.has_value());
   EXPECT_EQ(inspection.model->variables.count(pcor::Quantity::ambient_temperature), 0U);
   EXPECT_THAT(inspection.roles, Contains(AllOf(role("ambient_temperature", "ATX"),
-                                               Field(&InspectedRole::trap, testing::HasSubstr("TTX")))));
+                                               Field(&InspectedRole::caveat, testing::HasSubstr("TTX")))));
 }
 
 TEST(Inspect, FrostPointIsReadWithoutAnotherHumidity) {
@@ -126,7 +126,7 @@ TEST(Inspect, FrostPointIsReadWithoutAnotherHumidity) {
   EXPECT_EQ(both.model->variable_of(pcor::Quantity::dew_point), "dew_point");
   EXPECT_EQ(both.model->variable_of(pcor::Quantity::frost_point), "");
   EXPECT_THAT(both.roles, Contains(AllOf(role("frost_point", "frost_point"),
-                                         Field(&InspectedRole::trap, testing::HasSubstr("dew_point")))));
+                                         Field(&InspectedRole::caveat, testing::HasSubstr("dew_point")))));
 }
 
 TEST(Inspect, ReportBeginsWithWarningsAndRoles) {

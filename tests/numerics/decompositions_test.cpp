@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace pcor::internal {
@@ -62,6 +63,33 @@ TEST(LargerCovariance, ExceedsBothAndNotTheirSum) {
       EXPECT_GT(symmetric_eigenvalues(excess).minCoeff(), -1e-10) << "rank limit times elements near 10";
     EXPECT_TRUE(larger_covariance(a, 4.0 * a).isApprox(4.0 * a, 1e-10));
   }
+}
+
+// A product of a triangle with its transpose is positive definite, and its factor is the triangle.
+TEST(Cholesky, SolvesWhitensAndHasTheDeterminant) {
+  Eigen::Matrix3d lower;
+  lower << 2.0, 0.0, 0.0, -1.0, 3.0, 0.0, 0.5, 1.0, 0.1;
+  const Eigen::MatrixXd matrix = lower * lower.transpose();
+  const Eigen::MatrixXd right = symmetric(3, 7);
+  const Eigen::VectorXd one = right.col(1);
+  const Cholesky factor(matrix);
+  // Rounding errors times the condition number of the matrix, near 1e4.
+  constexpr double tolerance = 1e-11;
+  EXPECT_TRUE(factor.is_positive_definite());
+  EXPECT_TRUE(factor.lower().isApprox(Eigen::MatrixXd(lower), tolerance));
+  EXPECT_NEAR(factor.log_determinant(), 2.0 * std::log(2.0 * 3.0 * 0.1), tolerance);
+  EXPECT_TRUE((matrix * factor.solve(right)).isApprox(right, tolerance));
+  EXPECT_TRUE((matrix * factor.solve(one)).isApprox(one, tolerance));
+  EXPECT_TRUE((lower * factor.whiten(right)).isApprox(right, tolerance));
+  EXPECT_TRUE((lower * factor.whiten(one)).isApprox(one, tolerance));
+  EXPECT_TRUE((matrix * symmetric_solution(matrix, right)).isApprox(right, tolerance));
+  EXPECT_TRUE((lower * solution_of(Eigen::MatrixXd(lower), right)).isApprox(right, tolerance));
+}
+
+TEST(Cholesky, IndefiniteMatrix_HasNoDeterminant) {
+  const Cholesky factor(Eigen::MatrixXd(Eigen::Vector3d(1.0, -1.0, 2.0).asDiagonal()));
+  EXPECT_FALSE(factor.is_positive_definite());
+  EXPECT_TRUE(std::isnan(factor.log_determinant()));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ NoiseModel noise_of(const Binning& bins) {
   NoiseModel noise;
   noise.coefficients = {0.5, 0.2};
   noise.level = {Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(bins.size()), 0.1, 0.3)};
-  noise.slow = {0.2, 0.0, 0.3, 0.0, 0.1};
+  noise.drift_component_rms = {0.2, 0.0, 0.3, 0.0, 0.1};
   return noise;
 }
 

@@ -47,7 +47,7 @@ TEST(Whitening, SlowNoiseCovarianceBecomesTheIdentity) {
     NoiseModel noise;
     if (coefficient != 0.0) noise.coefficients = {coefficient};
     noise.level = {Eigen::VectorXd::LinSpaced(count, 0.3, 0.5)};
-    noise.slow = {0.4, 0.0, 0.7, 0.2};
+    noise.drift_component_rms = {0.4, 0.0, 0.7, 0.2};
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
     for (const pcor::Segment& segment : bins.segments()) {
       for (std::size_t i = 0; i < segment.count; ++i) {
@@ -61,12 +61,12 @@ TEST(Whitening, SlowNoiseCovarianceBecomesTheIdentity) {
       }
     }
     Eigen::MatrixXd slow = Eigen::MatrixXd::Zero(count, count);
-    for (std::size_t k = 0; k < slow_times.size(); ++k) {
+    for (std::size_t k = 0; k < drift_time_constants.size(); ++k) {
       for (std::size_t i = 0; i < bins.size(); ++i) {
         for (std::size_t j = 0; j < bins.size(); ++j) {
           slow(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
-              noise.slow[k] * noise.slow[k] *
-              std::exp(-std::abs(bins.time()[i] - bins.time()[j]) / slow_times[k]);
+              noise.drift_component_rms[k] * noise.drift_component_rms[k] *
+              std::exp(-std::abs(bins.time()[i] - bins.time()[j]) / drift_time_constants[k]);
         }
       }
     }
@@ -96,7 +96,7 @@ TEST(Whitening, PureAutoregressionIsLimitOfVanishingDrift) {
   noise.coefficients = {0.5, -0.3, 0.2, 0.1};
   noise.level = {Eigen::VectorXd::LinSpaced(count, 0.3, 0.5)};
   const Whitening alone(bins, noise, 0);
-  noise.slow = {1e-7};  // share of the level, squared: 1e-13
+  noise.drift_component_rms = {1e-7};  // share of the level, squared: 1e-13
   const Whitening vanishing(bins, noise, 0);
   // More columns than the filter takes at a time, and not a multiple of them.
   const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(count, 11);
@@ -146,9 +146,9 @@ TEST(SlowNoise, EstimatesTheSizeOfTheDrift) {
     std::vector<double> gains;
     for (unsigned seed = 1; seed <= 9; ++seed) {
       const FoundNoise found = find_noise(bins, columns, {drifting(count, seed, 0.1, 0.2, memory)});
-      sizes.push_back(Eigen::Map<const Eigen::Vector4d>(found.model.slow.data()).norm());
+      sizes.push_back(Eigen::Map<const Eigen::Vector4d>(found.model.drift_component_rms.data()).norm());
       gains.push_back(found.drift_gain);
-      EXPECT_EQ(found.model.drifts(), sizes.back() > 0.0);
+      EXPECT_EQ(found.model.has_drift(), sizes.back() > 0.0);
     }
     EXPECT_NEAR(std::log(median(sizes) / 0.2), 0.0, std::log(1.5)) << memory;
     EXPECT_GT(median(gains), 30.0) << memory;

@@ -42,8 +42,8 @@ std::string number(std::size_t value) { return std::to_string(value); }
 
 TEST(Communicator, GathersValuesInRankOrder) {
   const auto gather = [](Communicator& comm) {
-    const std::string first = joined(comm.gather(std::string(comm.rank(), 'x')));
-    return first + joined(comm.gather(std::string("\0\n", 2) + number(comm.rank()), 7));
+    const std::string first = joined(comm.all_gather(std::string(comm.rank(), 'x')));
+    return first + joined(comm.all_gather(std::string("\0\n", 2) + number(comm.rank()), 7));
   };
   const std::string zero("\0\n", 2);
   EXPECT_THAT(each_of(3, gather), Each("<><x><xx><" + zero + "0><" + zero + "1><" + zero + "2>"));
@@ -54,7 +54,7 @@ TEST(Communicator, AllRanksFailWithTheEarliestError) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1) comm.fail(Error(Error::Code::unit, "flight 5"), 6);
     if (comm.rank() == 2) comm.fail(Error(Error::Code::file, "flight 3"), 4);
-    return joined(comm.gather("part"));
+    return joined(comm.all_gather("part"));
   };
   EXPECT_THAT(each_of(4, work), Each("file: flight 3"));
 }
@@ -63,9 +63,9 @@ TEST(Communicator, ContinuesAfterACommonError) {
   const auto work = [](Communicator& comm) {
     try {
       if (comm.rank() == 1) comm.fail(Error(Error::Code::unit, "no unit"), 1);
-      comm.gather("");
+      comm.all_gather("");
     } catch (const Error& error) {
-      return joined(comm.gather(error.code() == Error::Code::unit ? error.what() : "?"));
+      return joined(comm.all_gather(error.code() == Error::Code::unit ? error.what() : "?"));
     }
     return std::string("no error");
   };
@@ -75,35 +75,35 @@ TEST(Communicator, ContinuesAfterACommonError) {
 TEST(Communicator, LastMessageExplainsMemberFailure) {
   const auto work = [](Communicator& comm) {
     if (comm.rank() == 1)
-      return "left: " + std::string(comm.leave(Error(Error::Code::system, "no memory"))->what());
+      return "left: " + std::string(comm.finalize(Error(Error::Code::system, "no memory"))->what());
     std::string said;
     for (int time = 0; time < 2; ++time) {
       try {
-        comm.gather("");
+        comm.all_gather("");
       } catch (const Error& error) {
         said += std::string(error.what()) + ", ";
       }
     }
-    return "left: " + std::string(comm.leave()->what());
+    return "left: " + std::string(comm.finalize()->what());
   };
   EXPECT_THAT(each_of(3, work), Each("left: no memory"));
 }
 
 TEST(Communicator, FinishedRanksExitSilently) {
   const auto work = [](Communicator& comm) {
-    comm.gather("");
-    return comm.leave() ? "error" : "done";
+    comm.all_gather("");
+    return comm.finalize() ? "error" : "done";
   };
   EXPECT_THAT(each_of(3, work), Each("done"));
   EXPECT_THAT(each_of(1, work), ElementsAre("done"));
 }
 
 TEST(Communicator, DifferentExchangesAreAnError) {
-  EXPECT_THAT(each_of(3, [](Communicator& comm) { return joined(comm.gather("", comm.rank() / 2)); }),
+  EXPECT_THAT(each_of(3, [](Communicator& comm) { return joined(comm.all_gather("", comm.rank() / 2)); }),
               Each(StartsWith("system: ")));
   const auto stops_early = [](Communicator& comm) {
-    if (comm.rank() > 0) comm.gather("");
-    const auto error = comm.leave();
+    if (comm.rank() > 0) comm.all_gather("");
+    const auto error = comm.finalize();
     return std::string(error ? to_string(error->code()) : "done");
   };
   EXPECT_THAT(each_of(2, stops_early), Each(StartsWith("system")));
@@ -112,9 +112,9 @@ TEST(Communicator, DifferentExchangesAreAnError) {
 TEST(Communicator, OneMemberSendsNoMessage) {
   EXPECT_TRUE(run_with_communicator(1,
                                     [](Communicator& comm) {
-                                      comm.gather("part");
+                                      comm.all_gather("part");
                                       EXPECT_THROW(comm.fail(Error(Error::Code::usage, "wrong"), 0), Error);
-                                      EXPECT_STREQ(comm.leave(Error(Error::Code::usage, "wrong"))->what(),
+                                      EXPECT_STREQ(comm.finalize(Error(Error::Code::usage, "wrong"))->what(),
                                                    "wrong");
                                     })
                   .front()
@@ -133,12 +133,12 @@ TEST(Communicator, RandomFailuresCauseNoDeadlock) {
           if (luck == 0) comm.fail(Error(Error::Code::usage, "failed"), chance() % 9);
           if (luck == 1) throw Error(Error::Code::usage, "unexpected");
           if (luck == 2) break;
-          comm.gather(std::string(luck, 'x'));
+          comm.all_gather(std::string(luck, 'x'));
         }
       } catch (const Error& error) {
-        return std::string(comm.leave(error).value_or(error).what());
+        return std::string(comm.finalize(error).value_or(error).what());
       }
-      const auto error = comm.leave();
+      const auto error = comm.finalize();
       return std::string(error ? error->what() : "done");
     });
     // Either all ranks succeed or all fail.

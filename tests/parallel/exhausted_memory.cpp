@@ -32,9 +32,9 @@ int main(int argc, char** argv) {
     pcor::MpiCommunicator comm;
     is_exhausted = comm.rank() == 1;
     try {
-      comm.gather(comm.rank() == 0 ? std::string(message, 'x') : "");
+      comm.all_gather(comm.rank() == 0 ? std::string(message, 'x') : "");
     } catch (const std::bad_alloc&) {
-      const auto error = comm.leave(pcor::Error(pcor::Error::Code::system, "no memory"));
+      const auto error = comm.finalize(pcor::Error(pcor::Error::Code::system, "no memory"));
       is_agreed = error && std::string(error->what()) == "no memory";
     }
     if (!is_agreed) std::fprintf(stderr, "process %zu does not have the error\n", comm.rank());

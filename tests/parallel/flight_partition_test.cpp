@@ -27,17 +27,17 @@ std::vector<std::uint64_t> loads(std::size_t ranks, const std::vector<std::uint6
   std::vector<int> owners(sizes.size(), 0);
   std::mutex counting;
   run_with_communicator(ranks, [&](Communicator& comm) {
-    const FlightPartition share(comm, sizes);
-    EXPECT_EQ(share.flights(), sizes.size());
+    const FlightPartition partition(comm, sizes);
+    EXPECT_EQ(partition.flights(), sizes.size());
     std::size_t own = 0;
     const std::lock_guard lock(counting);
     for (std::size_t flight = 0; flight < sizes.size(); ++flight) {
-      if (!share.is_local(flight)) continue;
+      if (!partition.is_local(flight)) continue;
       ++owners[flight];
       ++own;
       load[comm.rank()] += sizes[flight];
     }
-    EXPECT_EQ(share.local_count(), own);
+    EXPECT_EQ(partition.local_count(), own);
   });
   EXPECT_THAT(owners, Each(1));
   return load;
@@ -101,9 +101,10 @@ TEST(FlightPartition, GatheredPartsKeepBitsAndFlightOrder) {
   for (std::size_t flight = 0; flight < flights; ++flight) alone_parts[flight] = part_of(flight);
   for (const std::size_t ranks : {1, 2, 3, 11}) {
     run_with_communicator(ranks, [&](Communicator& comm) {
-      const FlightPartition share(comm, std::vector<std::uint64_t>(flights, 5));
-      const auto parts = share.of_each_flight<Part>([&](std::size_t flight) { return alone_parts[flight]; });
-      EXPECT_EQ(packed(parts), packed(alone_parts));
+      const FlightPartition partition(comm, std::vector<std::uint64_t>(flights, 5));
+      const auto parts =
+          partition.all_gather_flights<Part>([&](std::size_t flight) { return alone_parts[flight]; });
+      EXPECT_EQ(serialized(parts), serialized(alone_parts));
     });
   }
 }
@@ -111,9 +112,9 @@ TEST(FlightPartition, GatheredPartsKeepBitsAndFlightOrder) {
 TEST(FlightPartition, ReportsTheErrorOfTheFirstFailedFlight) {
   std::vector<std::string> messages(3);
   run_with_communicator(3, [&](Communicator& comm) {
-    const FlightPartition share(comm, std::vector<std::uint64_t>(9, 1));
+    const FlightPartition partition(comm, std::vector<std::uint64_t>(9, 1));
     try {
-      share.of_each_flight<int>([](std::size_t flight) {
+      partition.all_gather_flights<int>([](std::size_t flight) {
         if (flight % 4 == 3) throw Error(Error::Code::file, "flight " + std::to_string(flight));
         return 0;
       });
@@ -127,13 +128,13 @@ TEST(FlightPartition, ReportsTheErrorOfTheFirstFailedFlight) {
 
 constexpr std::size_t many = 50;
 
-FlightPartition share_of_many(Communicator& comm) {
+FlightPartition partition_of_many(Communicator& comm) {
   std::vector<std::uint64_t> sizes;
   for (std::size_t flight = 0; flight < many; ++flight) sizes.push_back(1 + flight * flight % 17);
   return {comm, sizes};
 }
 
-TEST(SumOfEachFlight, AddsInTheOrderOfFlights) {
+TEST(AllReduceFlights, AddsInTheOrderOfFlights) {
   // Of numbers whose sum depends on their order.
   const auto part = [](std::size_t flight) {
     return std::ldexp(1.0 + 1.0 / static_cast<double>(1 + flight), static_cast<int>(flight * 7 % 60));
@@ -142,15 +143,15 @@ TEST(SumOfEachFlight, AddsInTheOrderOfFlights) {
   for (std::size_t flight = 0; flight < many; ++flight) expected += part(flight);
   for (const std::size_t size : {1U, 2U, 5U}) {
     run_with_communicator(size, [&](Communicator& comm) {
-      const FlightPartition share = share_of_many(comm);
-      EXPECT_EQ(share.sum_of_each_flight<double>(part), expected);
-      EXPECT_EQ(share.sum_of_each_flight<double>(part, 3), expected);
+      const FlightPartition partition = partition_of_many(comm);
+      EXPECT_EQ(partition.all_reduce_flights<double>(part), expected);
+      EXPECT_EQ(partition.all_reduce_flights<double>(part, 3), expected);
     });
   }
-  EXPECT_EQ(FlightPartition(0).sum_of_each_flight<double>(part), 0.0);
+  EXPECT_EQ(FlightPartition(0).all_reduce_flights<double>(part), 0.0);
 }
 
-TEST(SumOfEachFlight, FailsOnAllRanks) {
+TEST(AllReduceFlights, FailsOnAllRanks) {
   const auto part = [](std::size_t flight) {
     if (flight == 41 || flight == 43) throw Error(Error::Code::file, "flight " + std::to_string(flight));
     return 1.0;
@@ -159,7 +160,7 @@ TEST(SumOfEachFlight, FailsOnAllRanks) {
     std::vector<int> failed(3, 0);
     run_with_communicator(3, [&](Communicator& comm) {
       try {
-        share_of_many(comm).sum_of_each_flight<double>(part, threads);
+        partition_of_many(comm).all_reduce_flights<double>(part, threads);
       } catch (const Error& error) {
         if (std::string(error.what()) == "flight 41") ++failed[comm.rank()];
       }
@@ -168,7 +169,7 @@ TEST(SumOfEachFlight, FailsOnAllRanks) {
   }
 }
 
-TEST(SumOfEachFlight, MatrixSumEqualsThatOfOneMember) {
+TEST(AllReduceFlights, MatrixSumEqualsThatOfOneMember) {
   constexpr Eigen::Index width = 31;
   const auto part = [](std::size_t flight) {
     const Eigen::MatrixXd rows =
@@ -177,17 +178,17 @@ TEST(SumOfEachFlight, MatrixSumEqualsThatOfOneMember) {
         });
     return Eigen::MatrixXd(rows.transpose() * rows);
   };
-  const auto expected = FlightPartition(many).sum_of_each_flight<Eigen::MatrixXd>(part);
+  const auto expected = FlightPartition(many).all_reduce_flights<Eigen::MatrixXd>(part);
   for (const std::size_t size : {2U, 40U}) {
     run_with_communicator(size, [&](Communicator& comm) {
-      EXPECT_EQ(share_of_many(comm).sum_of_each_flight<Eigen::MatrixXd>(part), expected);
+      EXPECT_EQ(partition_of_many(comm).all_reduce_flights<Eigen::MatrixXd>(part), expected);
     });
   }
 }
 
-TEST(SharesOfEntries, BelongToTheOwnersOfTheirFlights) {
+TEST(PartitionOfEntries, BelongToTheOwnersOfTheirFlights) {
   run_with_communicator(3, [](Communicator& comm) {
-    const FlightPartition flights = share_of_many(comm);
+    const FlightPartition flights = partition_of_many(comm);
     const std::vector<std::size_t> flight_of_each{4, 0, 4, 49, 7};
     const FlightPartition entries = flights.of_entries(flight_of_each);
     ASSERT_EQ(entries.flights(), flight_of_each.size());

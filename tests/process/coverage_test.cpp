@@ -136,11 +136,11 @@ struct Shares {
 // In level flight, in a pull-up and a push-over, slow and fast: in one flight they share what is systematic.
 std::vector<std::size_t> samples_of(const SimulationSummary& summary) {
   std::vector<std::size_t> samples;
-  for (const LegFlown& leg : summary.legs) {
+  for (const SimulatedLeg& leg : summary.legs) {
     if (leg.kind == "take-off") continue;
     for (const double part : {0.35, 0.7}) {
-      samples.push_back(static_cast<std::size_t>(leg.first_time + part * (leg.last_time - leg.first_time) -
-                                                 summary.first_time));
+      samples.push_back(static_cast<std::size_t>(leg.start_time + part * (leg.end_time - leg.start_time) -
+                                                 summary.start_time));
     }
   }
   return samples;

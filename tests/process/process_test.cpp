@@ -795,7 +795,7 @@ TEST_F(Process, ExtendedFlapsHaveNoUncertaintyAndTheirTimes) {
   ASSERT_EQ(summary.outside.size(), 1U);
   EXPECT_EQ(summary.outside[0].reason, "flaps extended");
   // The value of a record belongs to its middle.
-  EXPECT_EQ(summary.outside[0].begin - summary.first_time, 30.5);
+  EXPECT_EQ(summary.outside[0].begin - summary.start_time, 30.5);
   EXPECT_EQ(summary.outside[0].end - summary.outside[0].begin, 10.0);
   EXPECT_THAT(summary.notes, Contains(test::Says("do not use 10 of 40 records")));
 }

@@ -12,11 +12,11 @@
 namespace pcor {
 namespace {
 
-LawInfo law(const std::string& from, const std::string& to, bool in_processing = false) {
+LawInfo law(const std::string& from, const std::string& to, bool operational = false) {
   LawInfo info;
   info.valid_from = from;
   info.valid_to = to;
-  info.in_processing = in_processing;
+  info.operational = operational;
   info.note = "rms 0.3 hPa";
   return info;
 }

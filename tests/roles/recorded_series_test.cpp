@@ -14,7 +14,7 @@ namespace {
 
 /// Its second pair, its altitude and its thermometer have no unit in the file.
 const VariableNaming& aircraft() {
-  static const VariableNaming family = parse_family(R"(
+  static const VariableNaming naming = parse_naming(R"(
 format = "pcor-aircraft/1"
 name = "mine"
 title = "my aircraft"
@@ -36,7 +36,7 @@ H2 = "ft"
 T2 = "degC"
 )",
                                                     "mine.toml");
-  return family;
+  return naming;
 }
 
 class WithValues : public testing::Test {

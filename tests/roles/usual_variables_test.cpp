@@ -11,7 +11,7 @@ using testing::IsSupersetOf;
 using testing::Not;
 
 TEST(UsualVariables, ExistForOptionalRolesOnly) {
-  const VariableNaming& ncar = family_named("ncar");
+  const VariableNaming& ncar = naming_by_name("ncar");
   EXPECT_THAT(usual_variables(ncar, Quantity::attack), ElementsAre("ATTACK", "AKRD"));
   EXPECT_THAT(usual_variables(ncar, Quantity::cabin_pressure), ElementsAre("PCAB"));
   EXPECT_THAT(usual_variables(Quantity::attack), IsSupersetOf({"ATTACK", "AOA", "alpha", "ALPHA"}));
@@ -24,7 +24,7 @@ TEST(UsualVariables, ExistForOptionalRolesOnly) {
 
 TEST(UsualVariables, UsualAltitudesAreGpsHeights) {
   // Against the height that a pressure makes, no pressure could be tested.
-  const VariableNaming& ncar = family_named("ncar");
+  const VariableNaming& ncar = naming_by_name("ncar");
   EXPECT_THAT(usual_variables(ncar, Quantity::altitude), Not(Contains("PALT")));
   EXPECT_THAT(usual_heights(ncar), IsSupersetOf(usual_variables(ncar, Quantity::altitude)));
   EXPECT_EQ(usual_heights(ncar).back(), "PALT");

@@ -93,8 +93,8 @@ class Simulated {
   std::pair<std::size_t, std::size_t> leg(const std::string& kind, double less = 0.0) const {
     for (auto each = summary_.legs.rbegin(); each != summary_.legs.rend(); ++each) {
       if (each->kind != kind) continue;
-      return {static_cast<std::size_t>(std::ceil(each->first_time - summary_.first_time + less)),
-              std::min(flight_.records(), static_cast<std::size_t>(each->last_time - summary_.first_time))};
+      return {static_cast<std::size_t>(std::ceil(each->start_time - summary_.start_time + less)),
+              std::min(flight_.records(), static_cast<std::size_t>(each->end_time - summary_.start_time))};
     }
     ADD_FAILURE() << "no leg " << kind;
     return {0, 0};
@@ -630,11 +630,11 @@ TEST(Simulate, ClockSkewDelaysOneSensor) {
 
 TEST(Simulate, NoiseHasTheSizeStated) {
   const std::string text = noisy_flight + leg("level", "duration = 1200");
-  const Simulated silent(text + "[noise]\nTTRR = 0\nGGALT = 0\n");
+  const Simulated none_detected(text + "[noise]\nTTRR = 0\nGGALT = 0\n");
   const Simulated noisy(text + "[noise]\nTTRR = 0.3\nGGALT = { rms = 2.0, memory = 5.0, bias = 1.0 }\n");
   const std::vector<std::pair<std::string, double>> expected{{"TTRR", 0.3}, {"GGALT", 2.0}};
   for (const auto& [name, rms] : expected) {
-    const auto a = silent.raw(name), b = noisy.raw(name);
+    const auto a = none_detected.raw(name), b = noisy.raw(name);
     double sum = 0.0, square = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       sum += b[i] - a[i];

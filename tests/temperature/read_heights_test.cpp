@@ -35,8 +35,8 @@ class DryAir : public testing::Test {
     dry_.variables.erase(pcor::Quantity::vapor_pressure);
   }
 
-  std::string trouble(const HeightRecord& record, const pcor::ModelDefinition& model) const {
-    return trouble_with_dry_air(record, model, pcor::Flight(pcor::test::short_flight()));
+  std::string problem(const HeightRecord& record, const pcor::ModelDefinition& model) const {
+    return dry_air_problem(record, model, pcor::Flight(pcor::test::short_flight()));
   }
 
   const pcor::ModelDefinition moist_ = pcor::test::laser_model();
@@ -44,27 +44,27 @@ class DryAir : public testing::Test {
 };
 
 TEST_F(DryAir, IsAcceptedAbove5Km) {
-  EXPECT_THAT(trouble(climb_from(5001.0, 0.0), dry_), IsEmpty());
-  EXPECT_THAT(trouble(climb_from(4999.0, 0.0), dry_), HasSubstr("4999 m"));
+  EXPECT_THAT(problem(climb_from(5001.0, 0.0), dry_), IsEmpty());
+  EXPECT_THAT(problem(climb_from(4999.0, 0.0), dry_), HasSubstr("4999 m"));
 }
 
 TEST_F(DryAir, IgnoresTheHumidityOfTheModel) {
   // The driest air below 5 km, 0.05 hPa at 540 hPa, makes 0.07 m in 2 km; steps of an archived flight are
   // rounded to 1 mm.
-  EXPECT_THAT(trouble(climb_from(1000.0, 0.07), moist_), IsEmpty());
-  EXPECT_THAT(trouble(climb_from(1000.0, 0.001), moist_), HasSubstr("EDPC contains no water vapour"));
+  EXPECT_THAT(problem(climb_from(1000.0, 0.07), moist_), IsEmpty());
+  EXPECT_THAT(problem(climb_from(1000.0, 0.001), moist_), HasSubstr("EDPC contains no water vapour"));
 }
 
 TEST_F(DryAir, ListsHumidityVariables) {
-  EXPECT_THAT(trouble(climb_from(1000.0, 0.0), dry_),
+  EXPECT_THAT(problem(climb_from(1000.0, 0.0), dry_),
               AllOf(HasSubstr("vapor_pressure = \"EDPC\""), HasSubstr("moist = true"), Not(HasSubstr("\n"))));
   pcor::ModelDefinition named = moist_;
   named.model.moist = false;
-  EXPECT_THAT(trouble(climb_from(1000.0, 0.0), named),
+  EXPECT_THAT(problem(climb_from(1000.0, 0.0), named),
               AllOf(HasSubstr("moist = true"), Not(HasSubstr("EDPC"))));
   pcor::ModelDefinition of_others = dry_;
   of_others.roles_from = "faam-core";
-  EXPECT_THAT(trouble(climb_from(1000.0, 0.0), of_others), HasSubstr("name the flight's vapor_pressure"));
+  EXPECT_THAT(problem(climb_from(1000.0, 0.0), of_others), HasSubstr("name the flight's vapor_pressure"));
 }
 
 /// The mean over the samples in the air.

@@ -267,7 +267,7 @@ TEST_F(TemperatureStudy, StatedErrorsHoldWithUsualSensorErrors) {
     const TemperatureCorrection& at = result.corrections[2];
     scores.errors.push_back(at.correction - correction_at(at.temperature, {true_value[0], true_value[1]}));
     scores.stated.push_back(at.standard_error);
-    if (!result.worse.empty()) ++insignificant;
+    if (!result.rejection_reason.empty()) ++insignificant;
     fs::remove(wrong);
   }
   RecordProperty("within_1", std::to_string(scores.within(1.0)));
@@ -291,7 +291,7 @@ TEST_F(Temperature, HumidityErrorIsNotAssignedToThermometer) {
     scenario.effects = {effect("humidity-error", {{"gain", -0.2}, {"dew_point", 0.0}})};
     const fs::path flight = fly(scenario, seed);
     const TemperatureResult result = fit_temperature({flight}, model());
-    EXPECT_THAT(result.worse, Not(IsEmpty())) << seed;
+    EXPECT_THAT(result.rejection_reason, Not(IsEmpty())) << seed;
     // The truth is 25 % of the measured value, reduced by the prior of 10 %; three standard deviations.
     const double left = 1.0 - std::pow(result.humidity_error / 0.1, 2);
     EXPECT_NEAR(result.humidity_change, 0.25 * left, 3.0 * result.humidity_error) << seed;
@@ -309,7 +309,7 @@ TEST_F(Temperature, RefusesDryAirUnlessRequested) {
   TemperatureOptions options = of_degree(1);
   options.dry_air = true;
   const TemperatureResult result = fit_temperature({flight}, dry, options);
-  EXPECT_THAT(result.worse, HasSubstr("dry"));
+  EXPECT_THAT(result.rejection_reason, HasSubstr("dry"));
   EXPECT_EQ(result.humidity_change, 0.0);
 }
 

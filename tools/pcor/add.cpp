@@ -76,7 +76,7 @@ void describe(const Extension& self, Field& field) {
 }
 
 void print(const ModelDefinition& extended, const Extension& extension, const AddArguments& options) {
-  say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
+  print_formatted("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
   const std::size_t count = extended.model.effects.size();
   for (std::size_t i = count - extension.added.size(); i < count; ++i) {
     const ModelEffect& effect = extended.model.effects[i];
@@ -100,23 +100,24 @@ void print(const ModelDefinition& extended, const Extension& extension, const Ad
                                           std::pair("q/70 hPa", effect.scaling.dynamic_pressure)}) {
       if (power != 0) formula += fmt::format(" * ({})^{}", pressure, power);
     }
-    say("{:<20} {:<15} {:<48} {}\n", effect.id, info_of(info ? info->location : effect.location).name,
-        formula, fmt::join(start, ", "));
+    print_formatted("{:<20} {:<15} {:<48} {}\n", effect.id,
+                    info_of(info ? info->location : effect.location).name, formula, fmt::join(start, ", "));
   }
   for (const auto& [role, variable] : extension.variables)
-    say("variable selected: {} = \"{}\"\n", role, variable);
-  say("\n");
-  say_written({options.output, options.common.json});
+    print_formatted("variable selected: {} = \"{}\"\n", role, variable);
+  print_formatted("\n");
+  print_written_files({options.output, options.common.json});
   const bool has_laser = extended.variables.count(Quantity::lams_airspeed) != 0;
   const std::string flight = options.flight.empty() ? "IN.nc" : shell_path(options.flight);
   const std::vector<ModelEffect>& added = extension.added;
   if (std::any_of(added.begin(), added.end(), is_fitted_by_temperature))
-    say("To fit the calibration of the temperature: {} temperature {} -m {} -o {}\n", program(), flight,
-        shell_path(options.output), output_file("calibrated.toml", {options.model, options.output}));
+    print_formatted("To fit the calibration of the temperature: {} temperature {} -m {} -o {}\n", program(),
+                    flight, shell_path(options.output),
+                    output_file("calibrated.toml", {options.model, options.output}));
   if (std::all_of(added.begin(), added.end(), is_fitted_by_temperature)) return;
-  say("To fit it: {} refit {} -m {}{} -o {}\n", program(), flight, shell_path(options.output),
-      has_laser ? "" : " --reference static:OTHER.toml",
-      output_file("fitted.toml", {options.model, options.output}));
+  print_formatted("To fit it: {} refit {} -m {}{} -o {}\n", program(), flight, shell_path(options.output),
+                  has_laser ? "" : " --reference static:OTHER.toml",
+                  output_file("fitted.toml", {options.model, options.output}));
 }
 
 void run(const AddArguments& options) {
@@ -149,7 +150,7 @@ void run(const AddArguments& options) {
     for (ParameterFit& each : extended.fits[i]) each.fixed = true;
   }
   OutputTransaction together;
-  deliver(extended, options.output, inputs);
+  write_model_output(extended, options.output, inputs);
   const auto first_added = static_cast<std::ptrdiff_t>(model.model.effects.size());
   Extension extension{
       {extended.model.effects.begin() + first_added, extended.model.effects.end()}, {}, options.output};

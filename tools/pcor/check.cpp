@@ -70,7 +70,8 @@ ModelDefinition read_second(const CheckArguments& options) {
 std::string key_number(const CheckResult& result) {
   const TestStatistic& key = result.key;
   return fmt::format("{:+.3f} +- {:.3f} {}, {}; tolerance {:g}{}{}", key.value, key.standard_error, key.unit,
-                     key.what, key.matters, result.withheld.empty() ? "" : "; ", result.withheld);
+                     key.what, key.tolerance, result.inconclusive_reason.empty() ? "" : "; ",
+                     result.inconclusive_reason);
 }
 
 /// Prints the first rows of a table in columns, the first left-aligned and the others right-aligned.
@@ -84,14 +85,15 @@ void print(const ReportTable& table) {
     widths.push_back(width);
   }
   const auto print_row = [&widths](const std::vector<std::string>& cells) {
-    say("    {:<{}}", cells[0], widths[0]);
+    print_formatted("    {:<{}}", cells[0], widths[0]);
     for (std::size_t column = 1; column < cells.size(); ++column)
-      say("  {:>{}}", cells[column], widths[column]);
-    say("\n");
+      print_formatted("  {:>{}}", cells[column], widths[column]);
+    print_formatted("\n");
   };
   print_row(table.headers);
   for (std::size_t row = 0; row < rows; ++row) print_row(table.rows[row]);
-  if (rows < table.rows.size()) say("    and {} more in --json and --report\n", table.rows.size() - rows);
+  if (rows < table.rows.size())
+    print_formatted("    and {} more in --json and --report\n", table.rows.size() - rows);
 }
 
 /// CheckArguments as on a command line, for the suggested commands.
@@ -104,7 +106,7 @@ std::string command_line(const CheckArguments& options) {
 std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
   return static_cast<std::size_t>(std::count_if(
       checks.results.begin(), checks.results.end(),
-      [verdict](const CheckResult& result) { return result.ran && result.verdict == verdict; }));
+      [verdict](const CheckResult& result) { return result.was_run && result.verdict == verdict; }));
 }
 
 /// Suggested next step: first for a fault that a refit cannot correct, then for the temperature, then for the
@@ -113,7 +115,7 @@ std::vector<NextStep> next_steps(const Checks& checks, const CheckArguments& opt
                                  const std::optional<ModelDefinition>& model) {
   const auto fails = [&](const std::string& name) {
     return std::any_of(checks.results.begin(), checks.results.end(), [&](const CheckResult& result) {
-      return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
+      return result.name == name && result.was_run && result.verdict == CheckVerdict::inconsistent;
     });
   };
   const std::string second =
@@ -151,19 +153,21 @@ std::vector<NextStep> next_steps(const Checks& checks, const CheckArguments& opt
 }
 
 void print_details(const Checks& checks) {
-  say("inconsistent: larger than the tolerance and than three standard errors; consistent: within the "
+  print_formatted(
+      "inconsistent: larger than the tolerance and than three standard errors; consistent: within the "
       "tolerance, by two standard errors\n");
   for (const CheckResult& result : checks.results) {
-    say("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
-    if (result.ran) {
-      say("  {}: {}.\n", to_string(result.verdict), result.decided);
-      say("  limitations: {}\n", result.cannot_see);
+    print_formatted("\n{}: {}\n", result.name,
+                    result.was_run ? result.finding : "not run: " + result.reason + ".");
+    if (result.was_run) {
+      print_formatted("  {}: {}.\n", to_string(result.verdict), result.explanation);
+      print_formatted("  limitations: {}\n", result.limitations);
     }
     if (!result.tables.empty()) print(result.tables.front());
     for (const Note& note : result.notes) {
       // The first note of a check that was not run repeats its reason.
-      if (result.ran || result.reason.find(note.text) == std::string::npos)
-        say("  note: {}.\n", format_note(note));
+      if (result.was_run || result.reason.find(note.text) == std::string::npos)
+        print_formatted("  note: {}.\n", format_note(note));
     }
   }
 }
@@ -176,24 +180,25 @@ void print(const Checks& checks, const CheckArguments& options, const std::optio
   for (const CheckVerdict verdict :
        {CheckVerdict::inconsistent, CheckVerdict::consistent, CheckVerdict::inconclusive})
     add_count(count_of(checks, verdict), to_string(verdict));
-  add_count(static_cast<std::size_t>(std::count_if(checks.results.begin(), checks.results.end(),
-                                                   [](const CheckResult& result) { return !result.ran; })),
-            "not run");
-  say("{}{}{}\n", checks.model, checks.model.empty() ? "" : ": ", fmt::join(counts, ", "));
-  say("{:<18} {:<14} {}\n", "check", "verdict", "number");
+  add_count(
+      static_cast<std::size_t>(std::count_if(checks.results.begin(), checks.results.end(),
+                                             [](const CheckResult& result) { return !result.was_run; })),
+      "not run");
+  print_formatted("{}{}{}\n", checks.model, checks.model.empty() ? "" : ": ", fmt::join(counts, ", "));
+  print_formatted("{:<18} {:<14} {}\n", "check", "verdict", "number");
   std::vector<std::string> not_run;
   for (const CheckResult& result : checks.results) {
-    if (result.ran)
-      say("{:<18} {:<14} {}\n", result.name, to_string(result.verdict), key_number(result));
+    if (result.was_run)
+      print_formatted("{:<18} {:<14} {}\n", result.name, to_string(result.verdict), key_number(result));
     else
       not_run.push_back(result.name);
   }
-  if (!not_run.empty()) say("not run: {}\n", fmt::join(not_run, ", "));
+  if (!not_run.empty()) print_formatted("not run: {}\n", fmt::join(not_run, ", "));
   if (is_verbose()) print_details(checks);
-  say_notes(checks.notes);
-  say_written({options.common.report, options.table, options.common.json});
-  say("{}.\n", summary_of(checks));
-  say_next(next_steps(checks, options, model));
+  print_notes(checks.notes);
+  print_written_files({options.common.report, options.table, options.common.json});
+  print_formatted("{}.\n", summary_of(checks));
+  print_next_steps(next_steps(checks, options, model));
 }
 
 /// Row for each check of each flight, which is checked separately.
@@ -208,10 +213,11 @@ FlightTable flight_table(const FlightSet& flights, const std::optional<ModelDefi
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const std::string name = flights.name(i);
     for (const CheckResult& result : alone[i]) {
-      if (result.ran) {
+      if (result.was_run) {
         const TestStatistic& key = result.key;
         table.add({name, result.name, std::string(to_string(result.verdict)), cell(key.value),
-                   cell(key.standard_error), key.unit, key.what, cell(key.matters), result.withheld});
+                   cell(key.standard_error), key.unit, key.what, cell(key.tolerance),
+                   result.inconclusive_reason});
       } else {
         table.add({name, result.name, "not run", "", "", "", "", "", result.reason});
       }
@@ -277,7 +283,7 @@ std::function<void()> add_check(CLI::App& program) {
       ->type_name("static:OTHER.toml");
   CLI::Option* const old = command->add_option_function<std::string>(
       "--second", [options](const std::string& model) { options->reference = second_system + model; });
-  keep_old_name(*old, "--reference static:OTHER.toml");
+  add_deprecated_alias(*old, "--reference static:OTHER.toml");
   add_table_option(*command, options->table,
                    "write one row per check and flight to FILE.csv, each flight checked separately");
   add_common_options<Checks>(*command, options->common);

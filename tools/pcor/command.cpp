@@ -57,10 +57,10 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
       ->take_all();
 }
 
-void keep_old_name(CLI::Option& option, const std::string& name_now) {
+void add_deprecated_alias(CLI::Option& option, const std::string& name_now) {
   option.group("");  // hidden
   option.each([old = "--" + option.get_lnames().front(), name_now](const std::string&) {
-    tell(fmt::format("pcor: {} was renamed to {}; the old name is deprecated", old, name_now));
+    print_error(fmt::format("pcor: {} was renamed to {}; the old name is deprecated", old, name_now));
   });
 }
 
@@ -87,7 +87,7 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_repo
         ->type_name("FILE.html");
   }
   CLI::Option* const quiet = command.add_flag("--quiet", options.quiet, "print no text");
-  command.add_flag_callback("--verbose", say_everything, "print all details, and notes in full")
+  command.add_flag_callback("--verbose", print_all_details, "print all details, and notes in full")
       ->excludes(quiet);
   command.add_flag_callback(
       "--no-clobber", [] { keeps_existing = true; }, "refuse to overwrite existing files");
@@ -108,7 +108,8 @@ CLI::Validator is_file_name() {
   return {check, ""};
 }
 
-void deliver(const ModelDefinition& model, const std::string& output, const std::vector<fs::path>& inputs) {
+void write_model_output(const ModelDefinition& model, const std::string& output,
+                        const std::vector<fs::path>& inputs) {
   if (output != standard_output) {
     save_model(model, output, inputs);
     return;
@@ -121,7 +122,7 @@ void add_force_option(CLI::App& command, bool& force) {
                    "write the result even if the fit is worse than the input model; the file then states it");
 }
 
-void refuse_worse(const std::string& worse, bool force, ModelDefinition& model) {
+void require_improvement(const std::string& worse, bool force, ModelDefinition& model) {
   // The verdict on an earlier step does not apply to this one.
   erase_entry(model.provenance, "forced");
   if (worse.empty()) return;

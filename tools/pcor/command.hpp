@@ -29,7 +29,7 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
 
 /// Keeps an option under its previous name: it works, is not shown in the help, and prints the new name on
 /// standard error.
-void keep_old_name(CLI::Option& option, const std::string& name_now);
+void add_deprecated_alias(CLI::Option& option, const std::string& name_now);
 
 /// Adds examples to the end of the help of a sub-command: command lines without the program, which work one
 /// after another on the flights of the README.
@@ -76,8 +76,8 @@ CLI::Validator is_file_name();
 
 /// Writes a model file atomically, or to standard output if `output` is `-`.
 /// @param inputs files that are never overwritten @throws Error as does `save_model`
-void deliver(const ModelDefinition& model, const std::string& output,
-             const std::vector<std::filesystem::path>& inputs);
+void write_model_output(const ModelDefinition& model, const std::string& output,
+                        const std::vector<std::filesystem::path>& inputs);
 
 /// Adds `--force` to a sub-command that writes a model.
 void add_force_option(CLI::App& command, bool& force);
@@ -87,7 +87,7 @@ void add_force_option(CLI::App& command, bool& force);
 ///
 /// @param worse reason, a sentence without its full stop; empty if the model is not worse
 /// @throws Error with the reason, if `worse` is not empty and `force` is false
-void refuse_worse(const std::string& worse, bool force, ModelDefinition& model);
+void require_improvement(const std::string& worse, bool force, ModelDefinition& model);
 
 /// JSON result, written by the first rank. Constructed before the work, so that an unwritable destination
 /// stops it early; the file is written atomically.
@@ -111,8 +111,8 @@ class JsonResult {
 };
 
 /// Refuses outputs that are inputs, under any name, two outputs with the same destination, including standard
-/// output, `-`, and with --no-clobber existing files. Registers existing files for `say_written`. Empty names
-/// are ignored.
+/// output, `-`, and with --no-clobber existing files. Registers existing files for `print_written_files`.
+/// Empty names are ignored.
 /// @throws Error
 void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);

@@ -29,15 +29,16 @@ void print_row(const std::string& name, const Statistics& s) {
   const auto known = [](double value, int digits) {
     return std::isnan(value) ? std::string("unknown") : fmt::format("{:.{}f}", value, digits);
   };
-  say("{:<{}} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, name_width, s.samples, s.bias,
-      s.scatter(), s.rms, known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
+  print_formatted("{:<{}} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, name_width, s.samples,
+                  s.bias, s.scatter(), s.rms, known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
 void print_header(const ModelComparison& model) {
   const bool by_gps = model.is_by_gps();
-  say("{:<{}} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
-      by_gps ? fmt::format("residual by {}, hPa", model.reference) : "residual, hPa", name_width, "samples",
-      by_gps ? "GPS bias" : "bias", "scatter", "rms", by_gps ? "max noise" : "noise", "ratio");
+  print_formatted("{:<{}} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n",
+                  by_gps ? fmt::format("residual by {}, hPa", model.reference) : "residual, hPa", name_width,
+                  "samples", by_gps ? "GPS bias" : "bias", "scatter", "rms", by_gps ? "max noise" : "noise",
+                  "ratio");
 }
 
 constexpr std::size_t listed_bands = 5;  // those with the largest errors, with --verbose
@@ -96,9 +97,9 @@ void print_parts(const ShownParts& parts, std::size_t more) {
   for (const PartStatistics& part : parts.regimes) print_row("  " + part.name, part.statistics);
   const std::size_t omitted = parts.omitted + more;
   const std::string rest = omitted == 0 ? "" : fmt::format("{} rows omitted (--verbose)", omitted);
-  if (!parts.bands.empty()) say("worst bands{}{}\n", rest.empty() ? "" : "; ", rest);
+  if (!parts.bands.empty()) print_formatted("worst bands{}{}\n", rest.empty() ? "" : "; ", rest);
   for (const PartStatistics& part : parts.bands) print_row("  " + part.name, part.statistics);
-  if (parts.bands.empty() && !rest.empty()) say("{}\n", rest);
+  if (parts.bands.empty() && !rest.empty()) print_formatted("{}\n", rest);
 }
 
 /// First cells of the rows of the models: "all" for a single model; numbers if a name is too long.
@@ -119,7 +120,7 @@ class RowNames {
 
   void print_numbers() const {
     for (const auto& [name, number] : rows_) {
-      if (are_long_) say("{}: {}\n", number, name);
+      if (are_long_) print_formatted("{}: {}\n", number, name);
     }
   }
 
@@ -146,45 +147,48 @@ void print_short(const Comparison& comparison, const RowNames& rows) {
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models) {
       const double ratio = model.noise_ratio();
-      say("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa{}\n", rows.of(model), further.reference,
-          model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
-          std::isnan(ratio) ? "" : fmt::format(", ratio {:.1f}", ratio));
+      print_formatted("{}, {}: {}bias {:+.3f}, rms {:.3f} hPa{}\n", rows.of(model), further.reference,
+                      model.is_by_gps() ? "GPS " : "", model.all.bias, model.all.rms,
+                      std::isnan(ratio) ? "" : fmt::format(", ratio {:.1f}", ratio));
     }
   }
-  say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  print_formatted("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
 }
 
 void print_model(const ModelComparison& model, bool with_name) {
-  if (with_name) say("\n{}\n", model.name);
+  if (with_name) print_formatted("\n{}\n", model.name);
   print_flaps_out(model.flaps_out, "the comparison");
-  say("\n");
+  print_formatted("\n");
   print_header(model);
   print_row("all", model.all);
   print_parts(shown_parts(model, model.regimes.size(), listed_bands), 0);
   if (model.flights.size() > 1) {
-    say("flights\n");
+    print_formatted("flights\n");
     for (const PartStatistics& part : model.flights) print_row("  " + part.name, part.statistics);
   }
-  if (!model.worst.empty()) say("worst minutes\n");
+  if (!model.worst.empty()) print_formatted("worst minutes\n");
   for (const WorstInterval& worst : model.worst) {
-    say("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
-        utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
+    print_formatted("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
+                    utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms,
+                    worst.regimes);
   }
   // Differences over time have no R2.
   if (std::isfinite(model.r_squared))
-    say("R2, 1 - (rms / standard deviation of the reference's delta-p)^2: {:.4f}\n", model.r_squared);
+    print_formatted("R2, 1 - (rms / standard deviation of the reference's delta-p)^2: {:.4f}\n",
+                    model.r_squared);
   if (std::isfinite(model.autocorrelation_time))  // not of a residual without scatter
-    say("the residuals are correlated in time: autocorrelation time {:.1f} samples\n",
-        model.autocorrelation_time);
+    print_formatted("the residuals are correlated in time: autocorrelation time {:.1f} samples\n",
+                    model.autocorrelation_time);
   if (model.reference_error > 0.0)
-    say("The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
+    print_formatted(
+        "The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
         model.reference_error);
 }
 
 /// Statistics of a further reference: all samples and each regime.
 void print_further(const Comparison& comparison, const RowNames& rows) {
-  say("\nresidual = {}, reference minus model\n", comparison.reference);
-  say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  print_formatted("\nresidual = {}, reference minus model\n", comparison.reference);
+  print_formatted("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
   print_header(comparison.models.front());
   for (const ModelComparison& model : comparison.models) {
     print_row(rows.of(model), model.all);
@@ -209,18 +213,19 @@ std::vector<std::filesystem::path> residual_files(const CompareArguments& option
 void print_in_full(const Comparison& comparison, const ChosenReferences& references, const RowNames& rows) {
   print_references(references);
   if (comparison.is_static_pressure) {
-    say("residual = static pressure of the reference ({}) minus static pressure of the model\n",
-        comparison.reference);
+    print_formatted("residual = static pressure of the reference ({}) minus static pressure of the model\n",
+                    comparison.reference);
   } else {
-    say("residual = {}, reference minus model\n", comparison.reference);
+    print_formatted("residual = {}, reference minus model\n", comparison.reference);
   }
-  say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  print_formatted("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
   if (comparison.models.size() > 1)
-    say("noise: common to all models, from the model with the smallest noise\n");
+    print_formatted("noise: common to all models, from the model with the smallest noise\n");
   for (const ModelComparison& model : comparison.models) print_model(model, comparison.models.size() > 1);
   if (comparison.total_pressure) {
     const LineFit& total = *comparison.total_pressure;
-    say("\ntotal pressure of the reference against total pressure of the model: slope {:.5f}, offset {:+.3f} "
+    print_formatted(
+        "\ntotal pressure of the reference against total pressure of the model: slope {:.5f}, offset {:+.3f} "
         "hPa, rms {:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
@@ -236,23 +241,23 @@ void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& mo
     print_in_full(comparison, references, rows);
   else
     print_short(comparison, rows);
-  say_notes(comparison.notes);
+  print_notes(comparison.notes);
   std::vector<std::string> written;
   for (const std::filesystem::path& file : residual_files(options)) written.push_back(file.string());
   written.insert(written.end(), {options.common.report, options.table, options.common.json});
-  say_written(written);
-  say_next(next_steps(result, models, options));
+  print_written_files(written);
+  print_next_steps(next_steps(result, models, options));
 }
 
 /// Adds the references of a model to the references of earlier models, without repetition.
-void add_references(ChosenReferences& told, const ChosenReferences& own) {
+void add_references(ChosenReferences& all, const ChosenReferences& own) {
   for (const auto& reference : own.used) {
     const auto same = [&reference](const auto& other) { return other->name() == reference->name(); };
-    if (std::none_of(told.used.begin(), told.used.end(), same)) told.used.push_back(reference);
+    if (std::none_of(all.used.begin(), all.used.end(), same)) all.used.push_back(reference);
   }
   for (const std::string& why_not : own.not_used) {
-    if (std::find(told.not_used.begin(), told.not_used.end(), why_not) == told.not_used.end())
-      told.not_used.push_back(why_not);
+    if (std::find(all.not_used.begin(), all.not_used.end(), why_not) == all.not_used.end())
+      all.not_used.push_back(why_not);
   }
 }
 
@@ -334,9 +339,9 @@ std::vector<std::string> level_texts(const Levels& levels) {
 
 /// First lines: the mean corrections, and the sign of the following values.
 void print_levels(const ComparisonWithGps& result) {
-  for (const std::string& text : level_texts(result.levels)) say("{}\n", text);
+  for (const std::string& text : level_texts(result.levels)) print_formatted("{}\n", text);
   if (!result.levels.empty())
-    say("A positive correction, or GPS bias by wind: delta-p of the model is too small.\n");
+    print_formatted("A positive correction, or GPS bias by wind: delta-p of the model is too small.\n");
 }
 
 std::string history_of(const CompareArguments& options) {

@@ -256,22 +256,25 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
 void print_references(const ChosenReferences& references) {
   std::vector<std::string> names;
   for (const auto& reference : references.used) names.push_back(reference->name());
-  if (names.size() > 1) say("references: {}\n", fmt::join(names, ", "));
-  for (const std::string& why_not : references.not_used) say("not used as a reference: {}\n", why_not);
+  if (names.size() > 1) print_formatted("references: {}\n", fmt::join(names, ", "));
+  for (const std::string& why_not : references.not_used)
+    print_formatted("not used as a reference: {}\n", why_not);
 }
 
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
-  if (flaps_out.samples > 0) say("{}\n", flaps_out_text(flaps_out, of_what));
+  if (flaps_out.samples > 0) print_formatted("{}\n", flaps_out_text(flaps_out, of_what));
 }
 
 void print_fit_summary(const RefitResult& fit) {
   const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
-  if (held_out && held_out->is_off()) say("Warning: {}.\n", held_out->text());
+  if (held_out && held_out->is_off()) print_formatted("Warning: {}.\n", held_out->text());
   if (fit.left > 0.0)
-    say("Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
+    print_formatted(
+        "Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
         fit.left, fit.drift_rms);
   if (fit.between_flights > 0.0)
-    say("Standard deviation between flights of the mean residual: {:.2f} hPa.\n", fit.between_flights);
+    print_formatted("Standard deviation between flights of the mean residual: {:.2f} hPa.\n",
+                    fit.between_flights);
 }
 
 }  // namespace pcor::tool

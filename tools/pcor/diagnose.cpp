@@ -47,42 +47,44 @@ std::string shortened_list(std::vector<std::string> items, std::size_t max_items
 }
 
 void print_finding(const Finding& finding) {
-  say("\n{}: {}\n", finding.id(), finding.title);
-  if (finding.effect.is_formula()) say("  formula: {}\n", finding.effect.formula);
-  say("  {}\n", kind_text(finding));
-  if (!finding.largest_reference.empty()) say("  {}\n", finding.size_text());
+  print_formatted("\n{}: {}\n", finding.id(), finding.title);
+  if (finding.effect.is_formula()) print_formatted("  formula: {}\n", finding.effect.formula);
+  print_formatted("  {}\n", kind_text(finding));
+  if (!finding.largest_reference.empty()) print_formatted("  {}\n", finding.size_text());
   if (!finding.worst_flight.empty()) {
-    say("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
-        utc_text(finding.worst_time));
+    print_formatted("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
+                    utc_text(finding.worst_time));
   }
   for (const Evidence& evidence : finding.evidence) {
-    say("  {:>3.0f} % of the evidence: {} {} to {}  {}\n", 100.0 * evidence.share, evidence.flight,
-        utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"), evidence.regimes);
+    print_formatted("  {:>3.0f} % of the evidence: {} {} to {}  {}\n", 100.0 * evidence.share,
+                    evidence.flight, utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"),
+                    evidence.regimes);
   }
   for (const Alias& alias : finding.aliases) {
-    const double typical = std::abs(alias.size_to_usual);
+    const double typical = std::abs(alias.relative_size);
     const std::string size =
         typical == 0.0 ? ""
                        : fmt::format(", {:.{}f} times its typical size", typical, typical < 10.0 ? 1 : 0);
-    say("  not distinguishable from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
-        estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
-        alias.chi2_less < 0.0 ? "more" : "less", size);
+    print_formatted("  not distinguishable from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n",
+                    alias.effect, estimates_text(alias.estimates), alias.correlation,
+                    std::abs(alias.chi2_difference), alias.chi2_difference < 0.0 ? "more" : "less", size);
   }
-  if (!finding.advice.sentence.empty()) say("  advice: {}\n", finding.advice.sentence);
+  if (!finding.advice.sentence.empty()) print_formatted("  advice: {}\n", finding.advice.sentence);
 }
 
 void print_findings(const std::vector<Finding>& findings) {
   if (findings.empty()) return;
-  say("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect", "coefficient",
-      "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
+  print_formatted("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect",
+                  "coefficient", "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
   const auto held_out = [](double rms) { return std::isnan(rms) ? "-" : fmt::format("{:.4f}", rms); };
   for (const Finding& finding : findings) {
-    say("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9} {:>9} {:>7.0f}\n", finding.id(),
-        estimates_text(finding.estimates), finding.largest_rms, finding.worst, finding.chi2,
-        probability(finding.p_value), held_out(finding.rms_before), held_out(finding.rms_after),
-        finding.events);
+    print_formatted("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9} {:>9} {:>7.0f}\n", finding.id(),
+                    estimates_text(finding.estimates), finding.largest_rms, finding.worst, finding.chi2,
+                    probability(finding.p_value), held_out(finding.rms_before), held_out(finding.rms_after),
+                    finding.events);
   }
-  say("before and after: rms, hPa, on held-out parts of the flights; events: separate times that support the "
+  print_formatted(
+      "before and after: rms, hPa, on held-out parts of the flights; events: separate times that support the "
       "effect\n");
   for (const Finding& finding : findings) print_finding(finding);
 }
@@ -91,17 +93,19 @@ void print_findings(const std::vector<Finding>& findings) {
 void print_short(const Diagnosis& diagnosis) {
   std::vector<std::string> advice;
   for (const Finding& finding : diagnosis.findings) {
-    const std::string size =
-        is_unusually_large(finding) ? fmt::format(" ({:.0f} times its usual size)", finding.times_usual) : "";
-    say("{}: {}{}, {}, p {}\n", finding.id(), estimates_text(finding.estimates), size, finding.size_text(),
-        probability(finding.p_value));
+    const std::string size = is_unusually_large(finding)
+                                 ? fmt::format(" ({:.0f} times its usual size)", finding.relative_size)
+                                 : "";
+    print_formatted("{}: {}{}, {}, p {}\n", finding.id(), estimates_text(finding.estimates), size,
+                    finding.size_text(), probability(finding.p_value));
     std::vector<std::string> rivals;
     for (const Alias& alias : finding.aliases) rivals.push_back(alias.effect);
-    if (!rivals.empty()) say("  not distinguishable from {}\n", shortened_list(rivals));
+    if (!rivals.empty()) print_formatted("  not distinguishable from {}\n", shortened_list(rivals));
     if (!finding.advice.sentence.empty()) advice.push_back(finding.advice.sentence);
   }
   if (!advice.empty())
-    say("advice: {}{}\n", advice.front(), advice.size() > 1 ? "; further advice with --verbose" : "");
+    print_formatted("advice: {}{}\n", advice.front(),
+                    advice.size() > 1 ? "; further advice with --verbose" : "");
   if (!diagnosis.unexplained.significant) return;
   std::vector<std::string> variables;
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
@@ -113,13 +117,13 @@ void print_short(const Diagnosis& diagnosis) {
     variables.push_back(fmt::format("{} (R2 {:.2f}{}{})", variable.name, variable.r2,
                                     similar.empty() ? "" : "; similar: ", fmt::join(similar, ", ")));
   }
-  say("unexplained residual: {:.3f} hPa rms{}{}\n", diagnosis.unexplained.rms,
-      variables.empty() ? "" : ", correlated with ", shortened_list(variables));
+  print_formatted("unexplained residual: {:.3f} hPa rms{}{}\n", diagnosis.unexplained.rms,
+                  variables.empty() ? "" : ", correlated with ", shortened_list(variables));
 }
 
 void print_list(const std::string& title, const std::vector<std::string>& items, bool all) {
   if (!items.empty())
-    say("{}: {}\n", title, all ? shortened_list(items, items.size()) : shortened_list(items));
+    print_formatted("{}: {}\n", title, all ? shortened_list(items, items.size()) : shortened_list(items));
 }
 
 void print_others(const Diagnosis& diagnosis, bool all) {
@@ -135,7 +139,7 @@ void print_others(const Diagnosis& diagnosis, bool all) {
     limits.push_back(fmt::format("{} ({}{}{:.3f} hPa{}{})", limit.effect, sizes, sizes.empty() ? "" : ": ",
                                  limit.rms, limit.note.empty() ? "" : "; ", limit.note));
   }
-  say("\n");
+  print_formatted("\n");
   print_list("not found, and at most (95 %)", limits, all);
   print_list("absorbed by the model", absorbed, all);
   print_list("not testable", not_testable, all);
@@ -151,17 +155,17 @@ std::vector<NextStep> next_steps(const Diagnosis& diagnosis, const ModelDefiniti
   const std::string compare =
       fmt::format("{} compare {} -m {}", program(), advised_command_line(options.comparison), model);
   const auto [detectable, tested] = detectable_at_usual_size(diagnosis);
-  if (diagnosis.verdict == Verdict::silent && tested > 0 && detectable == 0)
+  if (diagnosis.verdict == Verdict::none_detected && tested > 0 && detectable == 0)
     return {{"To test the model, add flights or a further reference. To see the residual", compare}};
   // A refit that decreases the rms by less than this share does not matter.
   constexpr double negligible = 0.02;
-  if (diagnosis.verdict == Verdict::silent && diagnosis.is_refitted &&
+  if (diagnosis.verdict == Verdict::none_detected && diagnosis.is_refitted &&
       diagnosis.residual_rms_held_out < (1.0 - negligible) * diagnosis.rms_given) {
     return {{"No missing effect was detected, but a refit decreases the rms on held-out parts",
              fmt::format("{} refit {} -m {} -o {}", program(), flights, model,
                          output_file("fitted.toml", inputs_of(options)))}};
   }
-  if (diagnosis.verdict == Verdict::silent) {
+  if (diagnosis.verdict == Verdict::none_detected) {
     return {{"To apply the model", process_command(options.comparison.flights, diagnosed, options.model,
                                                    options.comparison.timestamp_alignment)}};
   }
@@ -236,30 +240,30 @@ std::vector<NextStep> next_steps(const Diagnosis& diagnosis, const ModelDefiniti
 
 void print(const Diagnosis& diagnosis, const ModelDefinition& model, const ChosenReferences& references,
            const DiagnoseArguments& options) {
-  say("{}: {}.\n", to_string(diagnosis.verdict), verdict_text(diagnosis));
+  print_formatted("{}: {}.\n", to_string(diagnosis.verdict), verdict_text(diagnosis));
   const bool in_full = is_verbose() || options.full;
   if (in_full) {
-    say("\n");
+    print_formatted("\n");
     print_references(references);
-    say("reference: {}\n", diagnosis.reference);
-    say("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
+    print_formatted("reference: {}\n", diagnosis.reference);
+    print_formatted("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
   } else {
     print_short(diagnosis);
   }
-  say("rms {:.3f} hPa; noise {:.3f} hPa", diagnosis.rms_given, diagnosis.noise_rms);
+  print_formatted("rms {:.3f} hPa; noise {:.3f} hPa", diagnosis.rms_given, diagnosis.noise_rms);
   if (diagnosis.is_refitted) {
-    say("; rms {:.3f} hPa after a linear refit of the free coefficients", diagnosis.residual_rms);
+    print_formatted("; rms {:.3f} hPa after a linear refit of the free coefficients", diagnosis.residual_rms);
   }
-  say("\n");
+  print_formatted("\n");
   if (in_full) {
     print_flaps_out(diagnosis.flaps_out, "the diagnosis");
     print_findings(diagnosis.findings);
     print_unexplained(diagnosis.unexplained);
     print_others(diagnosis, options.full);
   }
-  say_notes(diagnosis.notes);
-  say_written({options.common.report, options.common.json});
-  say_next(next_steps(diagnosis, model, options));
+  print_notes(diagnosis.notes);
+  print_written_files({options.common.report, options.common.json});
+  print_next_steps(next_steps(diagnosis, model, options));
 }
 
 /// @throws Error if no flight has a variable of --not-variable
@@ -342,7 +346,7 @@ std::function<void()> add_diagnose(CLI::App& program) {
       ->capture_default_str();
   const char* const full = "print the lists of effects that were not found in full";
   command->add_flag("--full", options->full, full);
-  keep_old_name(*command->add_flag("--all", options->full, full), "--full");
+  add_deprecated_alias(*command->add_flag("--all", options->full, full), "--full");
   add_common_options<Diagnosis>(*command, options->common);
   add_examples(*command, {"diagnose first.nc second.nc -m fitted.toml --report diagnose.html",
                           "diagnose first.nc -m fitted.toml --try 'k * (ENGTRQ - 50) / 100'"});

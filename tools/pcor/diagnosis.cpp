@@ -270,28 +270,31 @@ std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("
 
 void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.significant) return;
-  say("\nunexplained residual: {:.3f} hPa rms (p {}), including {:.3f} hPa of slow drift{}{}\n",
-      unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
-      unexplained.regime.empty() ? "" : "; largest in ", unexplained.regime);
+  print_formatted("\nunexplained residual: {:.3f} hPa rms (p {}), including {:.3f} hPa of slow drift{}{}\n",
+                  unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
+                  unexplained.regime.empty() ? "" : "; largest in ", unexplained.regime);
   if (!unexplained.variables.empty()) {
-    say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "correlates with", "unit", "R2", "p", "hPa per unit",
-        "formula", "description");
+    print_formatted("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "correlates with", "unit", "R2", "p",
+                    "hPa per unit", "formula", "description");
     for (const EmpiricalPredictor& variable : unexplained.variables) {
       const std::string slope = variable.slope_error > 0.0
                                     ? fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error)
                                     : "no linear trend";
-      say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
-          probability(variable.p_value), slope, variable.formula, variable.description);
+      print_formatted("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit,
+                      variable.r2, probability(variable.p_value), slope, variable.formula,
+                      variable.description);
     }
-    say("{}\n", component_text(unexplained.variables.front()));
+    print_formatted("{}\n", component_text(unexplained.variables.front()));
   }
   for (const FlightOffset& step : unexplained.steps) {
-    say("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),
-        step.standard_error, step.size < 0.0 ? "below" : "above", probability(step.p_value));
+    print_formatted("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight,
+                    std::abs(step.size), step.standard_error, step.size < 0.0 ? "below" : "above",
+                    probability(step.p_value));
   }
   const std::size_t untested = unexplained.computed.size() + unexplained.shares_noise.size();
   if (untested > 0) {
-    say("{} variables were not tested, because they derive from the inputs of the residual; --json and "
+    print_formatted(
+        "{} variables were not tested, because they derive from the inputs of the residual; --json and "
         "--report name them\n",
         untested);
   }

@@ -91,7 +91,8 @@ void describe(const Catalogue& /*self*/, Field& field) {
 }
 
 void print_surface(const EffectInfo& info) {
-  say("\nCp is a tensor product of uniform cubic B-splines, by default 6 x 6. A refit penalises its second "
+  print_formatted(
+      "\nCp is a tensor product of uniform cubic B-splines, by default 6 x 6. A refit penalises its second "
       "differences, with a weight found by marginal likelihood. Outside the envelope of the knots Cp keeps "
       "the value of the edge, the sample has the quality bit outside_domain, and the stated error of delta-p "
       "grows.\n\n"
@@ -101,33 +102,36 @@ void print_surface(const EffectInfo& info) {
 
 void print_one(const EffectInfo& info) {
   const EffectLocationInfo& location = info_of(info.location);
-  say("{}: {}\n\n", info.id, info.title);
-  say("  family       {}\n  place        {}\n", info.family, component_of(info));
-  say("  formula      {}  [{}]\n  acts on      {}\n", info.formula, location.unit, location.adds_to);
+  print_formatted("{}: {}\n\n", info.id, info.title);
+  print_formatted("  family       {}\n  place        {}\n", info.family, component_of(info));
+  print_formatted("  formula      {}  [{}]\n  acts on      {}\n", info.formula, location.unit,
+                  location.adds_to);
   for (std::size_t i = 0; i < info.parameter_count(); ++i) {
     const ParameterInfo& parameter = info.parameters[i];
     const std::string neutral =
         parameter.shape ? "shapes the effect" : fmt::format("neutral {}", parameter.neutral);
-    say("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit, neutral,
-        parameter.lower, parameter.upper, parameter.typical);
+    print_formatted("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name,
+                    parameter.unit, neutral, parameter.lower, parameter.upper, parameter.typical);
   }
   for (std::size_t i = 0; i < info.scaling_count(); ++i) {
-    say("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", info.scalings[i].static_pressure,
-        info.scalings[i].dynamic_pressure);
+    print_formatted("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", info.scalings[i].static_pressure,
+                    info.scalings[i].dynamic_pressure);
   }
   if (info.constants != GasConstants::any)
-    say("  only in      models with {} constants\n", info.constants == GasConstants::dry ? "dry" : "moist");
-  say("  needs        {}\n",
-      info.need_count() == 0 ? "nothing" : fmt::format("{}", fmt::join(names_of_needs(info), ", ")));
-  say("  size         {}\n", info.size);
-  say("  confounders  {}\n", info.confounders);
-  say("  separated by {}\n", info.manoeuvre);
-  say("  source       {}\n", info.source);
+    print_formatted("  only in      models with {} constants\n",
+                    info.constants == GasConstants::dry ? "dry" : "moist");
+  print_formatted("  needs        {}\n", info.need_count() == 0
+                                             ? "nothing"
+                                             : fmt::format("{}", fmt::join(names_of_needs(info), ", ")));
+  print_formatted("  size         {}\n", info.size);
+  print_formatted("  confounders  {}\n", info.confounders);
+  print_formatted("  separated by {}\n", info.manoeuvre);
+  print_formatted("  source       {}\n", info.source);
   if (info.parameter_count() == 0) return print_surface(info);
-  say("  example      ");
+  print_formatted("  example      ");
   for (const auto& input : info.example.inputs) {
     if (input.quantity == Quantity::count) break;
-    say("{} = {}, ", info_of(input.quantity).name, input.value);
+    print_formatted("{} = {}, ", info_of(input.quantity).name, input.value);
   }
   std::vector<std::string> example;
   std::vector<std::string> typical;
@@ -135,8 +139,10 @@ void print_one(const EffectInfo& info) {
     example.push_back(fmt::format("{} = {}", info.parameters[i].name, info.example.parameters[i]));
     typical.push_back(fmt::format("{} = {}", info.parameters[i].name, info.parameters[i].typical));
   }
-  say("{} gives {} {}\n\nIn a model file:\n\n", fmt::join(example, ", "), info.example.value, location.unit);
-  say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", info.id, fmt::join(typical, ", "));
+  print_formatted("{} gives {} {}\n\nIn a model file:\n\n", fmt::join(example, ", "), info.example.value,
+                  location.unit);
+  print_formatted("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", info.id,
+                  fmt::join(typical, ", "));
 }
 
 /// Effects of each component of the instrument.
@@ -152,23 +158,25 @@ void print_short() {
   };
   for (const EffectInfo& info : effect_info) add(component_of(info), info.id);
   for (const EffectInfo& info : surface_info) add(component_of(info), info.id);
-  say("{:<14} effects\n", "place");
-  for (const auto& [place, ids] : places) say("{:<14} {}\n", place, fmt::join(ids, ", "));
-  say("{} known errors that no term of a model can describe, and all formulas: add --verbose\n",
-      std::size(effects_without_trace));
+  print_formatted("{:<14} effects\n", "place");
+  for (const auto& [place, ids] : places) print_formatted("{:<14} {}\n", place, fmt::join(ids, ", "));
+  print_formatted("{} known errors that no term of a model can describe, and all formulas: add --verbose\n",
+                  std::size(effects_without_trace));
 }
 
 void print_all() {
-  say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
+  print_formatted("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what",
+                  "formula");
   const auto print_row = [](const EffectInfo& info) {
-    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, component_of(info),
-        info_of(info.location).name, info.title, info.formula);
+    print_formatted("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", info.id, info.family, component_of(info),
+                    info_of(info.location).name, info.title, info.formula);
   };
   for (const EffectInfo& info : effect_info) print_row(info);
   for (const EffectInfo& info : surface_info) print_row(info);
-  say("\nKnown errors that no term of a model can describe\n\n");
-  for (const EffectWithoutTrace& effect : effects_without_trace) say("{:<22} {}\n", effect.id, effect.title);
-  say("\n");
+  print_formatted("\nKnown errors that no term of a model can describe\n\n");
+  for (const EffectWithoutTrace& effect : effects_without_trace)
+    print_formatted("{:<22} {}\n", effect.id, effect.title);
+  print_formatted("\n");
 }
 
 void run(const EffectsArguments& options) {
@@ -181,8 +189,8 @@ void run(const EffectsArguments& options) {
   if (without_trace != effects_without_trace.end()) {
     json.write(*without_trace);
     if (says)
-      say("{}: {}\n\nNo term of a model describes it: {}.\n", without_trace->id, without_trace->title,
-          without_trace->reason);
+      print_formatted("{}: {}\n\nNo term of a model describes it: {}.\n", without_trace->id,
+                      without_trace->title, without_trace->reason);
   } else if (!options.id.empty()) {
     const EffectInfo& info = find(options.id);
     json.write(CatalogueEntry{info});
@@ -192,8 +200,8 @@ void run(const EffectsArguments& options) {
     if (says) is_verbose() ? print_all() : print_short();
   }
   if (!says) return;
-  say_written({options.common.json});
-  if (options.id.empty()) say("For details: {} effects {}\n", program(), effect_info.front().id);
+  print_written_files({options.common.json});
+  if (options.id.empty()) print_formatted("For details: {} effects {}\n", program(), effect_info.front().id);
 }
 
 }  // namespace

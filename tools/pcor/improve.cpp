@@ -46,64 +46,67 @@ void print(const Improvement& improvement, const ChosenReferences& references,
            const ImproveArguments& options) {
   if (is_verbose()) {
     print_references(references);
-    say("reference: {}\n", improvement.fit.reference_text);
-    say("fitted to {} samples; not used: {}\n", improvement.fit.samples, mask_text(improvement.fit.masks));
+    print_formatted("reference: {}\n", improvement.fit.reference_text);
+    print_formatted("fitted to {} samples; not used: {}\n", improvement.fit.samples,
+                    mask_text(improvement.fit.masks));
     print_flaps_out(improvement.fit.flaps_out, "the fit");
-    say("\n");
+    print_formatted("\n");
   }
   std::vector<std::string> added;
   for (const ImproveStep& step : improvement.steps) {
     if (!step.added.empty()) added.push_back(step.added);
   }
   const ImproveStep& last = improvement.steps.back();
-  say("{}: rms {:.3f} hPa, held out {:.3f} hPa, noise {:.3f} hPa\n",
-      added.empty() ? "no effect added" : fmt::format("added {}", fmt::join(added, ", ")), last.rms_train,
-      last.rms_holdout, last.noise_rms);
+  print_formatted("{}: rms {:.3f} hPa, held out {:.3f} hPa, noise {:.3f} hPa\n",
+                  added.empty() ? "no effect added" : fmt::format("added {}", fmt::join(added, ", ")),
+                  last.rms_train, last.rms_holdout, last.noise_rms);
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
-  say("{:<24} {:>10} {:>10} {:>10} {:>13}  {}\n", "rms, hPa", "training", "held out", "noise", "coefficients",
-      "rms of effect");
-  say("{:<24} {:>10} {:>10}\n", "input model", figure(improvement.given_rms_train),
-      figure(improvement.given_rms_holdout));
+  print_formatted("{:<24} {:>10} {:>10} {:>10} {:>13}  {}\n", "rms, hPa", "training", "held out", "noise",
+                  "coefficients", "rms of effect");
+  print_formatted("{:<24} {:>10} {:>10}\n", "input model", figure(improvement.given_rms_train),
+                  figure(improvement.given_rms_holdout));
   bool delivers_rivals = false;
   for (std::size_t i = 0; i < improvement.steps.size(); ++i) {
     const ImproveStep& step = improvement.steps[i];
     const Finding* const finding = i > 0 ? finding_of(improvement, i) : nullptr;
-    say("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}{}\n",
-        step.added.empty() ? "refitted" : "+ " + step.added, step.rms_train, step.rms_holdout, step.noise_rms,
-        step.terms, finding == nullptr ? "" : "  " + finding->size_text(""));
+    print_formatted("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}{}\n",
+                    step.added.empty() ? "refitted" : "+ " + step.added, step.rms_train, step.rms_holdout,
+                    step.noise_rms, step.terms, finding == nullptr ? "" : "  " + finding->size_text(""));
     delivers_rivals = delivers_rivals || step.delivered != step.added;
   }
   if (delivers_rivals) {
-    say("{:<24} {:>10} {:>10}\n", "output model", figure(improvement.rms_train),
-        figure(improvement.rms_holdout));
+    print_formatted("{:<24} {:>10} {:>10}\n", "output model", figure(improvement.rms_train),
+                    figure(improvement.rms_holdout));
   }
   if (!options.fit.holdout.empty()) {
     std::vector<std::string> names;
     for (const std::string& path : options.fit.holdout)
       names.push_back(std::filesystem::path(path).filename().string());
-    say("held out: {}\n", fmt::join(names, ", "));
+    print_formatted("held out: {}\n", fmt::join(names, ", "));
   } else if (improvement.holdout_is_flights) {
-    say("held out: the last {:.0f} % of every flight\n", 100.0 * (1.0 - options.fit.training_share));
+    print_formatted("held out: the last {:.0f} % of every flight\n",
+                    100.0 * (1.0 - options.fit.training_share));
   } else {
-    say("held out: five-fold cross-validation in blocks of 5 min, without outliers; hold out whole flights "
+    print_formatted(
+        "held out: five-fold cross-validation in blocks of 5 min, without outliers; hold out whole flights "
         "with --holdout\n");
   }
   print_fit_summary(improvement.fit);
   if (is_verbose()) {
-    say("\n");
+    print_formatted("\n");
     for (const ImproveStep& step : improvement.steps) {
-      say("{}\n", step.learnt);
-      if (const std::string text = rivals_text(step); !text.empty()) say("  {}\n", text);
+      print_formatted("{}\n", step.learnt);
+      if (const std::string text = rivals_text(step); !text.empty()) print_formatted("  {}\n", text);
     }
   }
-  std::string stopped = improvement.why_stopped;
+  std::string stopped = improvement.stop_explanation;
   for (std::size_t at = 0; (at = stopped.find("; rejected: ", at)) != std::string::npos;)
     stopped.replace(at, 2, "\n");
-  say("stopped: {}\n", stopped);
+  print_formatted("stopped: {}\n", stopped);
   if (is_verbose()) print_unexplained(improvement.steps.back().diagnosis.unexplained);
-  say_notes(improvement.fit.notes);
-  say_written({options.output, options.common.report, options.common.json});
-  say_next(next_steps(improvement, options));
+  print_notes(improvement.fit.notes);
+  print_written_files({options.output, options.common.report, options.common.json});
+  print_next_steps(next_steps(improvement, options));
 }
 
 void run(const ImproveArguments& options) {
@@ -137,10 +140,10 @@ void run(const ImproveArguments& options) {
                    command_line(options.comparison) + command_line(options.fit));
     }
   }
-  refuse_worse(improvement.worse, options.force, improvement.model);
+  require_improvement(improvement.rejection_reason, options.force, improvement.model);
   if (!is_speaker()) return;
   OutputTransaction together;
-  deliver(improvement.model, options.output, inputs);
+  write_model_output(improvement.model, options.output, inputs);
   if (!options.common.report.empty())
     write_report_of_run(improvement_report(improvement, model, &tried),
                         {{options.model, options.output},

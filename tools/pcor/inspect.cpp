@@ -145,39 +145,43 @@ void print_head(const Inspection& flight) {
   for (const std::string& part : {flight.project, flight.flight, flight.aircraft, flight.institution}) {
     if (!part.empty()) who.push_back(part);
   }
-  say("{}: {}\n", flight.path,
+  print_formatted(
+      "{}: {}\n", flight.path,
       who.empty() ? "unknown aircraft: the file does not name it" : fmt::format("{}", fmt::join(who, ", ")));
-  say("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
-      utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
-      flight.time.gap_count == 1 ? "" : "s");
+  print_formatted("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
+                  utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
+                  flight.time.gap_count == 1 ? "" : "s");
   std::vector<std::string> rates;
   for (const auto& [rate, count] : flight.rates)
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
-  say("variables: {}\n", fmt::join(rates, ", "));
+  print_formatted("variables: {}\n", fmt::join(rates, ", "));
   if (flight.alike.empty()) {
-    say("naming convention: unknown; names of {} ({}) are tried\n", flight.family, flight.family_title);
+    print_formatted("naming convention: unknown; names of {} ({}) are tried\n", flight.naming,
+                    flight.naming_title);
   } else if (flight.alike.size() > 1) {
-    say("naming convention: files of {} match; names of {} are used; set the right one in the model by "
+    print_formatted(
+        "naming convention: files of {} match; names of {} are used; set the right one in the model by "
         "roles\n",
-        fmt::join(flight.alike, " and of "), flight.family);
+        fmt::join(flight.alike, " and of "), flight.naming);
   } else {
-    say("naming convention: {} ({})\n", flight.family_title, flight.family);
+    print_formatted("naming convention: {} ({})\n", flight.naming_title, flight.naming);
   }
 }
 
 void print_roles(const Inspection& flight) {
-  say("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
-      "alternatives");
+  print_formatted("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
+                  "alternatives");
   for (const InspectedRole& role : flight.roles) {
-    say("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
-        role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
-        100.0 * role.present, fmt::join(role.others, " "));
+    print_formatted("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
+                    role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
+                    100.0 * role.present, fmt::join(role.others, " "));
   }
   const bool doubt = std::any_of(flight.roles.begin(), flight.roles.end(),
                                  [](const InspectedRole& role) { return !role.is_verified; });
-  if (doubt) say("?: the meaning of the name on this aircraft is not documented publicly; verify it\n");
+  if (doubt)
+    print_formatted("?: the meaning of the name on this aircraft is not documented publicly; verify it\n");
   for (const InspectedRole& role : flight.roles) {
-    if (!role.trap.empty()) say("{}: {}\n", role.variable, role.trap);
+    if (!role.caveat.empty()) print_formatted("{}: {}\n", role.variable, role.caveat);
   }
 }
 
@@ -187,36 +191,39 @@ void print_candidates(const Inspection& flight) {
   for (const MissingRole& role : flight.missing) missing.insert(role.role);
   for (const InspectedRole& role : flight.roles) {
     if (!role.why.empty())
-      say("{} is {}: {}{}\n", role.variable, role.role, role.why,
+      print_formatted(
+          "{} is {}: {}{}\n", role.variable, role.role, role.why,
           role.others.empty() ? "" : fmt::format("; alternatives: {}", fmt::join(role.others, ", ")));
   }
   bool any = false;
   for (const auto& [role, candidates] : flight.candidates) {
     for (const RoleCandidate& each : candidates) {
       if (missing.count(role) == 0) continue;
-      if (!any) say("\n{:<33} {:<12} {:>5}  evidence\n", "candidates, not used", "variable", "score");
+      if (!any)
+        print_formatted("\n{:<33} {:<12} {:>5}  evidence\n", "candidates, not used", "variable", "score");
       any = true;
-      say("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
+      print_formatted("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
     }
   }
-  if (any) say("set the right one in the [variables] of the model\n");
-  if (!flight.not_used.empty()) say("\nnot used: {}\n", fmt::join(flight.not_used, ", "));
+  if (any) print_formatted("set the right one in the [variables] of the model\n");
+  if (!flight.not_used.empty()) print_formatted("\nnot used: {}\n", fmt::join(flight.not_used, ", "));
 }
 
 void print(const Problem& problem) {
   const std::string unit = problem.unit == "1" ? "" : " " + problem.unit;
-  say("  {}: {}, {:.4g}{}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, unit, problem.times,
-      problem.action);
+  print_formatted("  {}: {}, {:.4g}{}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, unit,
+                  problem.times, problem.action);
 }
 
 void print_missing(const Inspection& flight) {
   bool any = false;
   for (const MissingRole& role : flight.missing) {
     if (role.cost.empty() && role.effects.empty()) continue;
-    if (!any) say("\n{:<33} consequence\n", "missing");
+    if (!any) print_formatted("\n{:<33} consequence\n", "missing");
     any = true;
-    say("{:<33} {}{}{}\n", role.role, role.cost, role.cost.empty() || role.effects.empty() ? "" : "; ",
-        role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
+    print_formatted("{:<33} {}{}{}\n", role.role, role.cost,
+                    role.cost.empty() || role.effects.empty() ? "" : "; ",
+                    role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
   }
 }
 
@@ -227,13 +234,14 @@ void print_flown(const Inspection& flight) {
     ++count;
     time += interval.end - interval.begin;
   }
-  if (!flown.empty()) say("\n{:<18} {:>5} {:>8}\n", "flown", "times", "minutes");
+  if (!flown.empty()) print_formatted("\n{:<18} {:>5} {:>8}\n", "flown", "times", "minutes");
   for (const auto& [regime, sum] : flown)
-    say("{:<18} {:>5} {:>8.1f}\n", info_of(regime).name, sum.first, sum.second / 60.0);
+    print_formatted("{:<18} {:>5} {:>8.1f}\n", info_of(regime).name, sum.first, sum.second / 60.0);
   for (const FrozenSpan& span : flight.frozen) {
     const std::vector<double>& time = flight.samples->time;
-    say("{} is frozen from {} to {}\n", info_of(span.quantity).name, utc_text(time[span.first], "%H:%M:%S"),
-        utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
+    print_formatted("{} is frozen from {} to {}\n", info_of(span.quantity).name,
+                    utc_text(time[span.first], "%H:%M:%S"),
+                    utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
   }
 }
 
@@ -242,7 +250,8 @@ void print_by_gps(const GpsDesign& gps) {
     return error < max_defect_error ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
                                     : fmt::format("undetermined (requires {})", manoeuvre);
   };
-  say("delta-p by GPS ({}), standard errors expected in a usual atmosphere (refit states those of the "
+  print_formatted(
+      "delta-p by GPS ({}), standard errors expected in a usual atmosphere (refit states those of the "
       "flight): level {}, change with airspeed {}{}\n",
       gps.by_wind && gps.by_height ? "wind and height"
       : gps.by_wind                ? "wind"
@@ -276,7 +285,7 @@ void print_short(const Inspection& flight) {
                                               : fmt::format("{} {} (or {})", role.role, role.variable,
                                                             fmt::join(role.others, " ")));
   }
-  if (!pressures.empty()) say("{}\n", fmt::join(pressures, ", "));
+  if (!pressures.empty()) print_formatted("{}\n", fmt::join(pressures, ", "));
   std::vector<std::string> missing, series;
   for (const MissingRole& role : flight.missing) {
     const Quantity quantity = quantity_named(role.role);
@@ -285,7 +294,8 @@ void print_short(const Inspection& flight) {
     else if (!is_replaced(quantity, flight.roles))
       missing.push_back(role.role);
   }
-  say("{} roles assigned; missing: {}{}\n", flight.roles.size(),
+  print_formatted(
+      "{} roles assigned; missing: {}{}\n", flight.roles.size(),
       missing.empty() ? "no role" : fmt::format("{}", fmt::join(missing, ", ")),
       series.empty() ? "" : fmt::format("; missing series that no model reads: {}", fmt::join(series, ", ")));
   std::size_t shown = 0;
@@ -300,9 +310,9 @@ void print_short(const Inspection& flight) {
     ++shown;
   }
   if (flight.problems.size() > shown)
-    say("{} more problems: add --verbose\n", flight.problems.size() - shown);
+    print_formatted("{} more problems: add --verbose\n", flight.problems.size() - shown);
   const std::string models = applicable_text(flight.laws);
-  say("models for this flight: {}\n", models.empty() ? "no published one" : models);
+  print_formatted("models for this flight: {}\n", models.empty() ? "no published one" : models);
   if (models.empty() && flight.by_gps && !flight.by_gps->determines_level()) print_by_gps(*flight.by_gps);
 }
 
@@ -317,19 +327,19 @@ void print_in_full(const Inspection& flight) {
   print_roles(flight);
   print_candidates(flight);
   print_missing(flight);
-  if (!flight.problems.empty()) say("\nproblems\n");
+  if (!flight.problems.empty()) print_formatted("\nproblems\n");
   for (const Problem& problem : flight.problems) print(problem);
   print_flown(flight);
   if (flight.by_gps) print_by_gps(*flight.by_gps);
-  if (!flight.laws.empty()) say("\nmodels for this aircraft\n");
+  if (!flight.laws.empty()) print_formatted("\nmodels for this aircraft\n");
   for (const ModelCandidate& law : flight.laws) {
     const LawInfo& info = law.model.law;
     const std::string note = doubt_of_dates(info).empty() || info.note.empty() ? "" : "; note: " + info.note;
-    say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
-        !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
-        : !law.is_in_time      ? "; not for the date of the flight, " + validity_of(info)
-        : !law.why_not.empty() ? "; " + law.why_not
-                               : "; matches the flight's pressures, " + validity_of(info) + note);
+    print_formatted("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
+                    !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
+                    : !law.is_in_time      ? "; not for the date of the flight, " + validity_of(info)
+                    : !law.why_not.empty() ? "; " + law.why_not
+                                           : "; matches the flight's pressures, " + validity_of(info) + note);
   }
 }
 
@@ -339,7 +349,7 @@ void print(const Inspection& flight) {
     print_in_full(flight);
   else
     print_short(flight);
-  say_notes(flight.notes);
+  print_notes(flight.notes);
 }
 
 /// Published models in the commands, if their dates are in doubt.
@@ -362,13 +372,13 @@ std::string doubts_of_next(const Inspection& flight) {
 
 void print_next(const InspectArguments& options, const Inspection& flight) {
   if (flight.next.empty()) {
-    say("This file allows no correction: {}.\n", flight.why_no_model);
+    print_formatted("This file allows no correction: {}.\n", flight.why_no_model);
     return;
   }
-  say("Next{}{}{}:\n", options.flights.size() == 1 ? "" : " for " + flight.path,
-      flight.next.size() == 1 ? "" : ", in this order", doubts_of_next(flight));
-  for (const std::string& each : flight.next) say("  {}\n", each);
-  if (const std::string laser = use_of_laser(options, flight); !laser.empty()) say("{}\n", laser);
+  print_formatted("Next{}{}{}:\n", options.flights.size() == 1 ? "" : " for " + flight.path,
+                  flight.next.size() == 1 ? "" : ", in this order", doubts_of_next(flight));
+  for (const std::string& each : flight.next) print_formatted("  {}\n", each);
+  if (const std::string laser = use_of_laser(options, flight); !laser.empty()) print_formatted("{}\n", laser);
 }
 
 bool is_readable(const Inspection& flight) { return flight.unreadable.empty(); }
@@ -379,14 +389,14 @@ std::vector<Inspection> look(const InspectArguments& options, bool text) {
   const std::vector<std::filesystem::path> laws = named_models();
   std::vector<Inspection> all;
   for (const std::string& flight : options.flights) {
-    if (text && !all.empty()) say("\n");
+    if (text && !all.empty()) print_formatted("\n");
     try {
       all.push_back(inspect_flight(flight, laws, options.timestamp_alignment, options.roles));
     } catch (const Error& error) {
       if (options.flights.size() == 1 || error.code() == Error::Code::model) throw;
       all.push_back({flight});
       all.back().unreadable = error.what();
-      tell(error.what());
+      print_error(error.what());
       continue;
     }
     all.back().next = next_commands(options, all.back());
@@ -480,7 +490,7 @@ void run(const InspectArguments& options) {
   json.write(result);
   together.appear();
   if (!text) return;
-  say_written({options.model, options.common.report, options.common.json});
+  print_written_files({options.model, options.common.report, options.common.json});
   print_next(options, first);
 }
 

@@ -41,7 +41,7 @@ std::string troff(const std::string& text) {
 /// Running text in short lines that are not requests.
 std::string paragraph(const std::string& text) {
   std::string result;
-  for (const std::string& line : CLI::detail::split(folded(troff(text), max_line), '\n')) {
+  for (const std::string& line : CLI::detail::split(wrapped(troff(text), max_line), '\n')) {
     const std::string words = CLI::detail::trim_copy(line);
     result += (words[0] == '.' || words[0] == '\'' ? "\\&" : "") + words + "\n";
   }

@@ -86,10 +86,10 @@ void print_flags(const Flags& flagged) {
   bool any = false;
   for (std::size_t i = 0; i < quality_info.size(); ++i) {
     if (flagged[i] == 0) continue;
-    if (!any) say("{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
+    if (!any) print_formatted("{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
     any = true;
-    say("{:>9}  {:<32} {}\n", flagged[i], quality_info[i].name,
-        is_verbose() ? quality_info[i].meaning : quality_info[i].brief);
+    print_formatted("{:>9}  {:<32} {}\n", flagged[i], quality_info[i].name,
+                    is_verbose() ? quality_info[i].meaning : quality_info[i].brief);
   }
 }
 
@@ -114,26 +114,27 @@ void print(const ProcessedFlight& of) {
     if (!flight.empty()) flight += ' ';
     flight += part;
   }
-  say("{}{}{} to {} UTC: {} records, {} sample{} in a record\n", flight, flight.empty() ? "" : ", ",
-      utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.rate,
-      summary.rate == 1 ? "" : "s");
-  say("corrected {} of {} samples", summary.corrected, summary.samples);
+  print_formatted("{}{}{} to {} UTC: {} records, {} sample{} in a record\n", flight,
+                  flight.empty() ? "" : ", ", utc_text(summary.start_time), utc_text(summary.end_time),
+                  summary.records, summary.rate, summary.rate == 1 ? "" : "s");
+  print_formatted("corrected {} of {} samples", summary.corrected, summary.samples);
   if (summary.in_flight > 0) {
-    say("; in flight (dynamic pressure of {:.0f} hPa and more) {} with {}", summary.flying_dynamic_pressure,
-        summary.in_flight, format_defect(summary));
+    print_formatted("; in flight (dynamic pressure of {:.0f} hPa and more) {} with {}",
+                    summary.flying_dynamic_pressure, summary.in_flight, format_defect(summary));
   } else if (summary.corrected > 0) {
-    say("; all of them on the ground (dynamic pressure below {:.0f} hPa)", summary.flying_dynamic_pressure);
+    print_formatted("; all of them on the ground (dynamic pressure below {:.0f} hPa)",
+                    summary.flying_dynamic_pressure);
   }
-  say("\n");
-  if (summary.gaps > 0) say("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
+  print_formatted("\n");
+  if (summary.gaps > 0) print_formatted("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
   print_flags(summary.flagged);
   const auto bits = std::count_if(summary.flagged.begin(), summary.flagged.end(),
                                   [](std::size_t samples) { return samples > 0; });
   const auto warnings = std::count_if(summary.notes.begin(), summary.notes.end(),
                                       [](const Note& note) { return note.severity == Severity::warning; });
   constexpr std::size_t few = 1, usual = 3;  // fewer below a long table, but all warnings
-  say_notes(summary.notes, std::max(bits > 5 ? few : usual, static_cast<std::size_t>(warnings)));
-  say("{} {}: {}\n", wrote(of.output), of.output.string(), fmt::join(summary.outputs, " "));
+  print_notes(summary.notes, std::max(bits > 5 ? few : usual, static_cast<std::size_t>(warnings)));
+  print_formatted("{} {}: {}\n", wrote(of.output), of.output.string(), fmt::join(summary.outputs, " "));
 }
 
 /// Several flights as a table: a row when a flight is done, and common notes at the end.
@@ -145,27 +146,27 @@ class Table {
 
   void add(const ProcessedFlight& flight) {
     if (!has_head_) {
-      say("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", "flight", width_, "samples", "corrected", "delta-p",
-          "least", "greatest", with_models_ ? "  model" : "");
+      print_formatted("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", "flight", width_, "samples", "corrected",
+                      "delta-p", "least", "greatest", with_models_ ? "  model" : "");
     }
     has_head_ = true;
     const ProcessSummary& summary = flight.summary;
-    say("{:<{}} ", flight.input.filename().string(), width_);
+    print_formatted("{:<{}} ", flight.input.filename().string(), width_);
     if (flight.state != FlightState::processed) {
-      say("{}\n",
-          flight.reason.empty() ? std::string(to_string(flight.state)) : "not corrected: " + flight.reason);
+      print_formatted("{}\n", flight.reason.empty() ? std::string(to_string(flight.state))
+                                                    : "not corrected: " + flight.reason);
     } else if (summary.in_flight == 0) {
-      say("{:>9} {:>9} {:>9} {:>9} {:>9}{}\n", summary.samples, summary.corrected, "no flight", "", "",
-          model_of(flight));
+      print_formatted("{:>9} {:>9} {:>9} {:>9} {:>9}{}\n", summary.samples, summary.corrected, "no flight",
+                      "", "", model_of(flight));
     } else {
-      say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}{}\n", summary.samples, summary.corrected,
-          summary.mean_defect, summary.min_defect, summary.max_defect, model_of(flight));
+      print_formatted("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}{}\n", summary.samples, summary.corrected,
+                      summary.mean_defect, summary.min_defect, summary.max_defect, model_of(flight));
     }
   }
 
   static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
     if (count_of(flights, FlightState::processed) > 0)
-      say("delta-p: mean in flight, hPa, with minimum and maximum\n");
+      print_formatted("delta-p: mean in flight, hPa, with minimum and maximum\n");
     Flags flagged{};
     for (const ProcessedFlight& flight : flights) {
       for (std::size_t i = 0; i < flagged.size(); ++i) flagged[i] += flight.summary.flagged[i];
@@ -183,10 +184,10 @@ class Table {
           of.size() == 1 ? of.front() : fmt::format("each of {} of {} flights", of.size(), flights.size());
       notes.emplace_back(note.severity, fmt::format("{}: {}", whose, note.text));
     }
-    say_notes(notes, max_notes);
-    say("\n{} flights: {} processed into {}, {} up to date, {} not corrected\n", flights.size(),
-        count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
-        count_of(flights, FlightState::unreadable));
+    print_notes(notes, max_notes);
+    print_formatted("\n{} flights: {} processed into {}, {} up to date, {} not corrected\n", flights.size(),
+                    count_of(flights, FlightState::processed), folder,
+                    count_of(flights, FlightState::up_to_date), count_of(flights, FlightState::unreadable));
   }
 
  private:
@@ -300,7 +301,7 @@ void run(const ProcessArguments& options) {
   if (options.correct_with == "lams") process.process.correct_with = CorrectWith::lams;
   process.process.uncertainty = part_named(options.uncertainty);
   std::optional<Progress> bar;
-  process.begins = [&](std::size_t task) {
+  process.on_flight_start = [&](std::size_t task) {
     bar.emplace(many ? fmt::format("processing {} of {}", task + 1, tasks.size()) : "processing",
                 !options.common.quiet);
   };
@@ -308,7 +309,7 @@ void run(const ProcessArguments& options) {
   const bool text = wants_text(options.common);
   std::optional<Table> table;
   if (many && text) table.emplace(tasks, !options.models.empty());
-  process.ends = [&](const ProcessedFlight& flight) {
+  process.on_flight_end = [&](const ProcessedFlight& flight) {
     bar.reset();
     if (table) table->add(flight);
   };
@@ -339,10 +340,10 @@ void run(const ProcessArguments& options) {
   if (!many && first.state == FlightState::processed) {
     print(first);
   } else if (!many) {
-    say("{} is up to date for this version, flight, model and options\n", first.output.string());
+    print_formatted("{} is up to date for this version, flight, model and options\n", first.output.string());
   }
-  say_written({options.common.report, options.common.json});
-  say_next(next_steps(flights, options.common.report));
+  print_written_files({options.common.report, options.common.json});
+  print_next_steps(next_steps(flights, options.common.report));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ void require_parallel_command(const CLI::App& program) {
 
 /// @throws Error if the ranks were given different commands
 void require_one_command(const std::vector<std::string>& words) {
-  comm().gather("", std::hash<std::string>()(fmt::format("{}", fmt::join(words, "\n"))));
+  comm().all_gather("", std::hash<std::string>()(fmt::format("{}", fmt::join(words, "\n"))));
 }
 
 /// Parses the command line and runs it. @return the exit status
@@ -119,7 +119,7 @@ int run(int argc, char** argv) {
     require_parallel_command(program);
   } catch (const CLI::Success& help_or_version) {
     if (program.get_subcommands().empty() && words.front()[0] != '-') {
-      tell(usage_message(program, "", words));
+      print_error(usage_message(program, "", words));
       return wrong_usage;
     }
     std::ostringstream text;
@@ -127,10 +127,10 @@ int run(int argc, char** argv) {
     std::string printed = text.str();
     // A hidden group of options leaves a second empty line.
     for (std::size_t at = 0; (at = printed.find("\n\n\n")) != std::string::npos;) printed.erase(at, 1);
-    say_text(printed);
+    print_text(printed);
     return 0;
   } catch (const CLI::ParseError& error) {
-    tell(usage_message(program, error.what(), words));
+    print_error(usage_message(program, error.what(), words));
     return wrong_usage;
   }
 
@@ -149,10 +149,10 @@ bool is_final(const Error& error) {
 /// Ends the work after an error on this rank or on another one.
 Ending failed(const Error& error, bool at_once) {
   // Output is flushed before other ranks learn of the end.
-  finish_text();
+  flush_text();
   std::fflush(stdout);
-  const Error of_all = comm().leave(error).value_or(error);
-  tell(fmt::format("pcor: {}", of_all.what()));
+  const Error of_all = comm().finalize(error).value_or(error);
+  print_error(fmt::format("pcor: {}", of_all.what()));
   send_error(sanitize_line(of_all.what()), to_string(of_all.code()));
   // HDF5 may keep unwritten data after any error, and would try to write it at exit.
   return {work_not_done, at_once || is_final(of_all) || comm().size() == 1};
@@ -169,11 +169,11 @@ Ending run_program(int argc, char** argv, Communicator& comm) {
   try {
     set_program(argv[0]);
     const int status = run(argc, argv);
-    finish_text();
+    flush_text();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw Error(Error::Code::output,
                   "standard output: cannot be written; check the space at its destination");
-    if (const auto error = comm.leave()) return failed(*error, false);
+    if (const auto error = comm.finalize()) return failed(*error, false);
     return {status};
   } catch (const Error& error) {
     return failed(error, false);

@@ -86,12 +86,13 @@ RefitOptions refit_options(const RefitArguments& options, const FlightSet& holdo
 }
 
 void print_flights(const std::vector<FlightFit>& flights, const char* noise) {
-  say("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
-      "rms after", "bias after", "scatter", noise);
+  print_formatted("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples",
+                  "rms before", "rms after", "bias after", "scatter", noise);
   for (const FlightFit& flight : flights) {
-    say("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
-        flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples, flight.before.rms,
-        flight.after.rms, flight.after.bias, flight.after.scatter(), flight.after.noise_rms);
+    print_formatted("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
+                    flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples,
+                    flight.before.rms, flight.after.rms, flight.after.bias, flight.after.scatter(),
+                    flight.after.noise_rms);
   }
 }
 
@@ -100,7 +101,7 @@ void print_further(const std::vector<FlightFit>& further) {
   for (auto first = further.begin(); first != further.end();) {
     const auto end = std::find_if(
         first, further.end(), [&](const FlightFit& flight) { return flight.reference != first->reference; });
-    say("\nreference {}", first->reference);
+    print_formatted("\nreference {}", first->reference);
     const bool by_gps = first->reference == "wind" || first->reference == "height";
     print_flights({first, end}, by_gps ? "max noise" : "noise");
     first = end;
@@ -120,8 +121,9 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
   const auto likelihood = [&result](const std::string& error) {
     return result.is_by_gps() ? fmt::format("{:>13} ", error) : "";
   };
-  say("{:<36} {:>13} {:>13} {:>13} {}{:>13}  {}\n", "coefficient", "before", "after",
-      result.is_by_gps() ? "stated error" : "std. error", likelihood("likelihood"), "jackknife", "unit");
+  print_formatted("{:<36} {:>13} {:>13} {:>13} {}{:>13}  {}\n", "coefficient", "before", "after",
+                  result.is_by_gps() ? "stated error" : "std. error", likelihood("likelihood"), "jackknife",
+                  "unit");
   std::size_t rows = 0, omitted = 0;
   for (const FittedParameter& p : result.parameters) {
     if (is_of_surface(result, p.name) || (!is_verbose() && !p.fitted)) continue;
@@ -133,17 +135,18 @@ void print_coefficients(const RefitResult& result, std::size_t max_rows) {
                               : p.at_bound                   ? "bound"
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
-    say("{:<36} {:>13.6g} {:>13.6g} {:>13} {}{:>13}  {}\n", p.name, p.start, p.value, error,
-        likelihood(number(p.noise_error)), number(p.jackknife_error),
-        p.unit.empty() ? "see formula" : p.unit);
+    print_formatted("{:<36} {:>13.6g} {:>13.6g} {:>13} {}{:>13}  {}\n", p.name, p.start, p.value, error,
+                    likelihood(number(p.noise_error)), number(p.jackknife_error),
+                    p.unit.empty() ? "see formula" : p.unit);
   }
-  if (omitted > 0) say("and {} more: add --verbose\n", omitted);
+  if (omitted > 0) print_formatted("and {} more: add --verbose\n", omitted);
   for (const SurfaceFit& surface : result.surfaces) {
-    say("{}: second differences of {:.2g}, {:.1f} degrees of freedom\n", surface.effect, surface.roughness,
-        surface.degrees_of_freedom);
+    print_formatted("{}: second differences of {:.2g}, {:.1f} degrees of freedom\n", surface.effect,
+                    surface.roughness, surface.degrees_of_freedom);
   }
   if (result.defect_error > 0.0)
-    say("standard error of delta-p over the flights, by all coefficients: {:.2f} hPa\n", result.defect_error);
+    print_formatted("standard error of delta-p over the flights, by all coefficients: {:.2f} hPa\n",
+                    result.defect_error);
 }
 
 /// ", before 0.123"; empty for NaN, if samples have no residual with the coefficients of the file.
@@ -161,14 +164,15 @@ std::string outliers_text(const RefitResult& result, const RefitArguments& optio
 /// The residual and the fitted coefficients.
 void print_short(const RefitResult& result, const RefitArguments& options) {
   constexpr std::size_t max_rows = 6;
-  say("rms {:.3f} hPa{}; {} {:.3f} hPa; {} samples, {}\n", result.rms, before_text(result.rms_before),
-      result.noise_label(), result.noise_rms, result.samples, outliers_text(result, options));
+  print_formatted("rms {:.3f} hPa{}; {} {:.3f} hPa; {} samples, {}\n", result.rms,
+                  before_text(result.rms_before), result.noise_label(), result.noise_rms, result.samples,
+                  outliers_text(result, options));
   print_fit_summary(result);
   print_coefficients(result, max_rows);
   for (const FlightFit& flight : result.flights) {
     if (flight.holdout)
-      say("held out {}: rms {:.3f} hPa{}, bias {:+.3f}\n", flight.flight, flight.after.rms,
-          before_text(flight.before.rms), flight.after.bias);
+      print_formatted("held out {}: rms {:.3f} hPa{}, bias {:+.3f}\n", flight.flight, flight.after.rms,
+                      before_text(flight.before.rms), flight.after.bias);
   }
 }
 
@@ -176,27 +180,29 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
                   const RefitArguments& options) {
   print_fit_summary(result);
   print_references(references);
-  say("{}\n", result.estimator);
-  say("reference: {}\n", result.reference_text);
-  say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
+  print_formatted("{}\n", result.estimator);
+  print_formatted("reference: {}\n", result.reference_text);
+  print_formatted("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
   print_flaps_out(result.flaps_out, "the fit");
-  say("\n");
+  print_formatted("\n");
   print_coefficients(result, result.parameters.size());
-  say("\nrms {:.3f} hPa{}; {} {:.3f} hPa; {}\n", result.rms, before_text(result.rms_before),
-      result.noise_label(), result.noise_rms, outliers_text(result, options));
-  say("rms of residual / static pressure {:.5f}; standard deviation by the median of absolute values {:.3f} "
+  print_formatted("\nrms {:.3f} hPa{}; {} {:.3f} hPa; {}\n", result.rms, before_text(result.rms_before),
+                  result.noise_label(), result.noise_rms, outliers_text(result, options));
+  print_formatted(
+      "rms of residual / static pressure {:.5f}; standard deviation by the median of absolute values {:.3f} "
       "hPa\n",
       result.rms_over_pressure, result.bulk_rms);
-  say("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
+  print_formatted("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
   if (result.autocorrelation_time > 1.0) {
-    say("effective sample size: {1:.0f} of {0} samples, because the noise is correlated and drifts; the "
+    print_formatted(
+        "effective sample size: {1:.0f} of {0} samples, because the noise is correlated and drifts; the "
         "standard errors include this\n",
         result.samples, static_cast<double>(result.samples) / result.autocorrelation_time);
   }
   if (result.omissions.size() > 1) {
-    say("\n{:<36} {:>10} {:>10}\n", "effect removed, others refitted", "rms, hPa", "R2");
+    print_formatted("\n{:<36} {:>10} {:>10}\n", "effect removed, others refitted", "rms, hPa", "R2");
     for (const Omission& omission : result.omissions)
-      say("{:<36} {:>10.3f} {:>10.4f}\n", omission.effect, omission.rms, omission.r_squared);
+      print_formatted("{:<36} {:>10.3f} {:>10.4f}\n", omission.effect, omission.rms, omission.r_squared);
   }
   bool any = false;
   for (std::size_t a = 0; a < result.covariance_names.size(); ++a) {
@@ -205,9 +211,9 @@ void print_result(const RefitResult& result, const ChosenReferences& references,
       if (!(std::abs(r) > 0.9) || is_of_surface(result, result.covariance_names[a]) ||
           is_of_surface(result, result.covariance_names[b]))
         continue;
-      if (!any) say("\ncorrelations above 0.9\n");
+      if (!any) print_formatted("\ncorrelations above 0.9\n");
       any = true;
-      say("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
+      print_formatted("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
     }
   }
   print_flights(result.flights, result.noise_label());
@@ -293,13 +299,13 @@ FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, c
 }
 
 /// Writes the fitted models. @throws Error, before any file is written, if they are refused.
-void deliver_models(RefitResult& result, const std::vector<std::filesystem::path>& inputs,
-                    const RefitArguments& options) {
-  refuse_worse(result.worse, options.force, result.model);
-  deliver(result.model, options.output, inputs);
+void write_model_outputs(RefitResult& result, const std::vector<std::filesystem::path>& inputs,
+                         const RefitArguments& options) {
+  require_improvement(result.rejection_reason, options.force, result.model);
+  write_model_output(result.model, options.output, inputs);
   if (!result.reference) return;
-  refuse_worse(result.worse, options.force, *result.reference);
-  deliver(*result.reference, options.reference_output, inputs);
+  require_improvement(result.rejection_reason, options.force, *result.reference);
+  write_model_output(*result.reference, options.reference_output, inputs);
 }
 
 /// The first reference is also fitted.
@@ -325,7 +331,7 @@ void run(const RefitArguments& options) {
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     result = refit(of.flights, model, references.used, refit_with);
   }
-  const bool is_refused = !result.worse.empty() && !options.force;
+  const bool is_refused = !result.rejection_reason.empty() && !options.force;
   std::optional<Comparison> comparison;
   if (!options.common.report.empty())
     comparison = before_against_after(result, model, references.used, all, options);
@@ -344,7 +350,7 @@ void run(const RefitArguments& options) {
   }
   if (table) table->write(options.table);
   json.write(result);
-  if (!is_refused) deliver_models(result, inputs, options);
+  if (!is_refused) write_model_outputs(result, inputs, options);
   together.appear();
   const bool with_text = wants_text(options.common, {options.output, options.reference_output});
   if (with_text) {
@@ -352,13 +358,14 @@ void run(const RefitArguments& options) {
       print_result(result, references, options);
     else
       print_short(result, options);
-    say_notes(with_warnings(result.warnings, result.notes), std::max<std::size_t>(3, result.warnings.size()));
-    say_written({options.common.report, options.table, options.common.json});
+    print_notes(with_warnings(result.warnings, result.notes),
+                std::max<std::size_t>(3, result.warnings.size()));
+    print_written_files({options.common.report, options.table, options.common.json});
   }
-  if (is_refused) refuse_worse(result.worse, options.force, result.model);
+  if (is_refused) require_improvement(result.rejection_reason, options.force, result.model);
   if (!with_text) return;
-  say_written({options.output, options.reference_output});
-  say_next(next_steps(options));
+  print_written_files({options.output, options.reference_output});
+  print_next_steps(next_steps(options));
 }
 
 }  // namespace

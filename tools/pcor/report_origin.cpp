@@ -21,9 +21,9 @@ void remember_command(int count, const char* const* words) {
   for (int i = 1; i < count; ++i) command_of_this_run += " " + shell_quote(words[i]);
 }
 
-void say_next(const std::vector<NextStep>& steps) {
+void print_next_steps(const std::vector<NextStep>& steps) {
   for (const NextStep& step : steps)
-    say("{}{}{}\n", step.text, step.command.empty() ? "" : ": ", step.command);
+    print_formatted("{}{}{}\n", step.text, step.command.empty() ? "" : ": ", step.command);
 }
 
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options) {

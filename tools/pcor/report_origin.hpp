@@ -12,7 +12,7 @@ namespace pcor::tool {
 void remember_command(int count, const char* const* words);
 
 /// Prints the steps, each on a line: "To apply it: pcor process ...".
-void say_next(const std::vector<NextStep>& steps);
+void print_next_steps(const std::vector<NextStep>& steps);
 
 /// Input files of a report, and the next steps.
 struct ReportFiles {

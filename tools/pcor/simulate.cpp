@@ -26,32 +26,32 @@ std::string command_line(const SimulateArguments& options, std::uint64_t seed) {
 }
 
 void print_legs(const SimulationSummary& summary) {
-  say("\n");
-  say("{:<16} {:>8}  {:>8} {:>8} {:>8} {:>12} {:>12}\n", "leg", "begin", "end", "m", "hPa", "TAS m/s",
-      "alpha deg");
-  for (const LegFlown& leg : summary.legs) {
-    say("{:<16} {:>8}  {:>8} {:>8.0f} {:>8.1f} {:>12} {:>12}\n", leg.kind,
-        utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"), leg.altitude, leg.pressure,
-        fmt::format("{:.0f} to {:.0f}", leg.min_speed, leg.max_speed),
-        fmt::format("{:.1f} to {:.1f}", leg.min_attack, leg.max_attack));
+  print_formatted("\n");
+  print_formatted("{:<16} {:>8}  {:>8} {:>8} {:>8} {:>12} {:>12}\n", "leg", "begin", "end", "m", "hPa",
+                  "TAS m/s", "alpha deg");
+  for (const SimulatedLeg& leg : summary.legs) {
+    print_formatted("{:<16} {:>8}  {:>8} {:>8.0f} {:>8.1f} {:>12} {:>12}\n", leg.kind,
+                    utc_text(leg.start_time, "%H:%M:%S"), utc_text(leg.end_time, "%H:%M:%S"), leg.altitude,
+                    leg.pressure, fmt::format("{:.0f} to {:.0f}", leg.min_speed, leg.max_speed),
+                    fmt::format("{:.1f} to {:.1f}", leg.min_attack, leg.max_attack));
   }
-  say("\n");
+  print_formatted("\n");
 }
 
 void print(const SimulationSummary& summary, const SimulateArguments& options) {
-  say("{}, {}, {} to {} UTC: {} records, {} legs, seed {}\n", summary.name, summary.aircraft,
-      utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.legs.size(),
-      summary.seed);
+  print_formatted("{}, {}, {} to {} UTC: {} records, {} legs, seed {}\n", summary.name, summary.aircraft,
+                  utc_text(summary.start_time), utc_text(summary.end_time), summary.records,
+                  summary.legs.size(), summary.seed);
   if (is_verbose()) print_legs(summary);
   std::vector<std::string> errors = summary.effects;
   for (std::string& error : errors)
     error = error == "unknown" ? "an error of the scenario's own formula (unknown)" : error;
-  if (!errors.empty()) say("simulated errors: {}\n", fmt::join(errors, ", "));
-  say("{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
-      summary.variables.size(), options.output);
-  say_written({options.common.json});
-  say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(),
-      shell_path(options.output));
+  if (!errors.empty()) print_formatted("simulated errors: {}\n", fmt::join(errors, ", "));
+  print_formatted("{} {} variables, and the true values as TRUE_..., to {}\n", wrote(options.output),
+                  summary.variables.size(), options.output);
+  print_written_files({options.common.json});
+  print_formatted("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(),
+                  shell_path(options.output));
 }
 
 void run(const SimulateArguments& options) {

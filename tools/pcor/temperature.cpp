@@ -41,78 +41,82 @@ TemperatureOptions temperature_options(const TemperatureArguments& options) {
 }
 
 void print_flights(const TemperatureResult& result) {
-  say("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "segments", "coldest",
-      "warmest", "rms before", "rms after");
+  print_formatted("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "segments",
+                  "coldest", "warmest", "rms before", "rms after");
   for (const FlightHeights& flight : result.flights) {
     if (!flight.excluded.empty()) {
-      say("{:<28} skipped: {}\n", flight.flight, flight.excluded);
+      print_formatted("{:<28} skipped: {}\n", flight.flight, flight.excluded);
       continue;
     }
-    say("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight, flight.samples,
-        flight.segments, flight.min_temperature, flight.max_temperature, flight.rms_before, flight.rms_after);
+    print_formatted("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight,
+                    flight.samples, flight.segments, flight.min_temperature, flight.max_temperature,
+                    flight.rms_before, flight.rms_after);
   }
 }
 
 void print_parts(const TemperatureResult& result) {
-  say("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "alone", "all flights");
+  print_formatted("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "alone", "all flights");
   for (const std::vector<PartCorrection>* parts : result.parts()) {
     for (const PartCorrection& part : *parts)
-      say("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
-          format_estimate(part.correction, part.standard_error), part.common);
+      print_formatted("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
+                      format_estimate(part.correction, part.standard_error), part.common);
   }
 }
 
 void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
-    say("According to the heights, delta-p lacks {} in {} of {}, a range of {:.2f} hPa over the flights; the "
+    print_formatted(
+        "According to the heights, delta-p lacks {} in {} of {}, a range of {:.2f} hPa over the flights; the "
         "error was subtracted.\n",
         format_estimate(error.change, error.standard_error), error.parameter, error.effect, error.range);
   if (result.humidity_change != 0.0)
-    say("The heights change the vapour pressure by {} of its value.\n",
-        format_estimate(result.humidity_change, result.humidity_error));
+    print_formatted("The heights change the vapour pressure by {} of its value.\n",
+                    format_estimate(result.humidity_change, result.humidity_error));
 }
 
 void print_coefficients(const TemperatureResult& result) {
-  say("T corrected = T + a0 + a1 t + ..., t in degC\n");
-  say("{:<4} {:>12} {:>22} {:>27} {:>5}\n", "", "likelihood",
-      result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "least squares on height",
-      "unit");
+  print_formatted("T corrected = T + a0 + a1 t + ..., t in degC\n");
+  print_formatted("{:<4} {:>12} {:>22} {:>27} {:>5}\n", "", "likelihood",
+                  result.pressure_error > 0.0 ? "std. error" : "std. error, noise only",
+                  "least squares on height", "unit");
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
-    say("a{:<3} {:>+12.5g} {:>22.2g} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
-        result.likelihood.standard_errors[k],
-        fmt::format("{:+.4g} +- {:.2g}", result.least_squares.coefficients[k],
-                    result.least_squares.standard_errors[k]),
-        coefficient_unit(k));
+    print_formatted("a{:<3} {:>+12.5g} {:>22.2g} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
+                    result.likelihood.standard_errors[k],
+                    fmt::format("{:+.4g} +- {:.2g}", result.least_squares.coefficients[k],
+                                result.least_squares.standard_errors[k]),
+                    coefficient_unit(k));
   }
 }
 
 void print_corrections(const TemperatureResult& result) {
-  say("{:>12} {:>22}\n", "temperature", "correction");
+  print_formatted("{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
-    say("{:>10.1f} C {:>20} K\n", at.temperature, format_estimate(at.correction, at.standard_error));
+    print_formatted("{:>10.1f} C {:>20} K\n", at.temperature,
+                    format_estimate(at.correction, at.standard_error));
 }
 
 void print_in_full(const TemperatureResult& result) {
   print_flights(result);
-  say("\n");
+  print_formatted("\n");
   print_coefficients(result);
-  say("Least squares assumes independent heights: its standard errors are too small.\n{}.\n",
-      pressure_error_text(result));
+  print_formatted("Least squares assumes independent heights: its standard errors are too small.\n{}.\n",
+                  pressure_error_text(result));
   print_law_errors(result);
-  say("Least squares gives {} K, after subtraction of errors of the model.\n",
-      format_estimate(result.least_squares_add, result.least_squares_add_error));
-  say("\n");
+  print_formatted("Least squares gives {} K, after subtraction of errors of the model.\n",
+                  format_estimate(result.least_squares_add, result.least_squares_add_error));
+  print_formatted("\n");
   print_corrections(result);
   print_parts(result);
-  say("\nnoise of the GPS height: {:.2f} m per sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
+  print_formatted(
+      "\nnoise of the GPS height: {:.2f} m per sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
       "height drifts by {:.3f} m per minute\n",
       result.gps_noise, result.gps_wander, result.gps_wander_time, result.drift);
-  say("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
+  print_formatted("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
   for (const DegreeChoice& choice : result.degrees)
-    say("{:<12} {:>16.1f} {:>26}\n", degree_name(choice.degree), choice.deviance,
-        std::isnan(choice.held_out)
-            ? "-"
-            : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
+    print_formatted("{:<12} {:>16.1f} {:>26}\n", degree_name(choice.degree), choice.deviance,
+                    std::isnan(choice.held_out)
+                        ? "-"
+                        : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
 }
 
 void print(const TemperatureResult& result) {
@@ -121,24 +125,24 @@ void print(const TemperatureResult& result) {
   } else {
     print_corrections(result);
     for (const FlightHeights& flight : result.flights) {
-      if (!flight.excluded.empty()) say("{}: skipped: {}\n", flight.flight, flight.excluded);
+      if (!flight.excluded.empty()) print_formatted("{}: skipped: {}\n", flight.flight, flight.excluded);
     }
   }
-  say_notes(with_warnings(result.warnings, result.notes), std::max<std::size_t>(3, result.warnings.size()));
+  print_notes(with_warnings(result.warnings, result.notes), std::max<std::size_t>(3, result.warnings.size()));
 }
 
 void print(const IterativeCalibration& result) {
-  say("{:<6} {:>10} {:>22} {:>24}  {}\n", "round", "rms, hPa", "change of delta-p, hPa",
-      "change of temperature, K", "coefficients");
+  print_formatted("{:<6} {:>10} {:>22} {:>24}  {}\n", "round", "rms, hPa", "change of delta-p, hPa",
+                  "change of temperature, K", "coefficients");
   for (std::size_t i = 0; i < result.rounds.size(); ++i) {
     const CalibrationRound& round = result.rounds[i];
     std::string coefficients;
     for (const double a : round.coefficients) coefficients += fmt::format("{:+.5g} ", a);
-    say("{:<6} {:>10.4f} {:>22.4f} {:>24.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
-        round.temperature_change, coefficients);
+    print_formatted("{:<6} {:>10.4f} {:>22.4f} {:>24.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
+                    round.temperature_change, coefficients);
   }
-  say("{}\n\n", result.converged ? "pressure and temperature have converged"
-                                 : "not converged: use the result with care");
+  print_formatted("{}\n\n", result.converged ? "pressure and temperature have converged"
+                                             : "not converged: use the result with care");
 }
 
 /// Used flights, as named by the user.
@@ -155,14 +159,14 @@ std::vector<NextStep> next_steps(const TemperatureResult& result, const Temperat
     return process_command(used_flights(result, options), result.model, model,
                            options.comparison.timestamp_alignment);
   };
-  if (result.worse.empty() && result.is_implausible()) {
+  if (result.rejection_reason.empty() && result.is_implausible()) {
     ComparisonOptions flights = options.comparison;
     flights.references.clear();
     return {{"To find the cause of the large correction",
              fmt::format("{} check {} -m {}", program(), advised_command_line(flights),
                          model_argument(options.model))}};
   }
-  if (result.worse.empty()) return {{"To apply it", process(options.output)}};
+  if (result.rejection_reason.empty()) return {{"To apply it", process(options.output)}};
   return {
       {"Flights that climb and descend by 3 km and more, there and back along the same track, determine "
        "the correction better. To apply the input model",
@@ -197,7 +201,7 @@ void run(const TemperatureArguments& options) {
     }
   }
   if (!is_speaker()) return;
-  const bool is_refused = !result.worse.empty() && !with.dry_air;
+  const bool is_refused = !result.rejection_reason.empty() && !with.dry_air;
   OutputTransaction together;
   if (!options.common.report.empty())
     write_report_of_run(temperature_report(result),
@@ -208,21 +212,21 @@ void run(const TemperatureArguments& options) {
                         options.common);
   json.write(in_turn);
   if (!is_refused) {
-    refuse_worse(result.worse, with.dry_air, result.model);
-    deliver(result.model, options.output, inputs);
+    require_improvement(result.rejection_reason, with.dry_air, result.model);
+    write_model_output(result.model, options.output, inputs);
   }
   together.appear();
   const bool with_text = wants_text(options.common, {options.output});
   if (with_text) {
     if (options.iterate) print(in_turn);
     print(result);
-    say_written({options.common.report, options.common.json});
+    print_written_files({options.common.report, options.common.json});
   }
-  if (is_refused) refuse_worse(result.worse, with.dry_air, result.model);
+  if (is_refused) require_improvement(result.rejection_reason, with.dry_air, result.model);
   if (!with_text) return;
-  say_written({options.output});
-  if (!result.worse.empty()) say("Not recommended: {}.\n", result.worse);
-  say_next(next_steps(result, options));
+  print_written_files({options.output});
+  if (!result.rejection_reason.empty()) print_formatted("Not recommended: {}.\n", result.rejection_reason);
+  print_next_steps(next_steps(result, options));
 }
 
 }  // namespace

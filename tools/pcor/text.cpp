@@ -87,13 +87,13 @@ const std::string& program() { return program_name(); }
 
 void set_program(const std::string& name_as_called) { program_name() = shell_quote(name_as_called); }
 
-void say_plainly() { is_plain = true; }
+void disable_terminal_style() { is_plain = true; }
 
 bool is_verbose() { return with_details; }
 
-void say_everything() { with_details = true; }
+void print_all_details() { with_details = true; }
 
-std::string folded(std::string_view line, std::size_t width) {
+std::string wrapped(std::string_view line, std::size_t width) {
   if (bytes_of(line, width) == line.size()) return std::string(line);
   // The pieces of a command would run alone if they are pasted.
   if (line.rfind("  " + program() + " ", 0) == 0) return std::string(line);
@@ -148,13 +148,13 @@ std::string coloured(std::string line) {
 
 }  // namespace
 
-void tell(const std::string& message) {
+void print_error(const std::string& message) {
   if (!is_speaker()) return;
   const std::string line = sanitize_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
-void say_text(std::string_view said) {
+void print_text(std::string_view said) {
   static const std::size_t width = terminal_width();
   static const bool colour = wants_colour();
   const std::string shown = sanitize_text(said);
@@ -164,7 +164,7 @@ void say_text(std::string_view said) {
     return;
   }
   for (std::size_t end = text.find('\n'); end != none; end = text.find('\n')) {
-    std::string line = folded(unfinished_line().append(text.substr(0, end)), width);
+    std::string line = wrapped(unfinished_line().append(text.substr(0, end)), width);
     fmt::print("{}\n", colour ? coloured(std::move(line)) : line);
     unfinished_line().clear();
     text.remove_prefix(end + 1);
@@ -172,18 +172,18 @@ void say_text(std::string_view said) {
   unfinished_line().append(text);
 }
 
-void finish_text() {
+void flush_text() {
   if (!unfinished_line().empty()) fmt::print("{}", unfinished_line());
   unfinished_line().clear();
 }
 
-void say_notes(Notes notes, std::size_t max_notes) {
+void print_notes(Notes notes, std::size_t max_notes) {
   constexpr std::size_t max_width = 136;
   std::stable_sort(notes.begin(), notes.end(),
                    [](const Note& a, const Note& b) { return a.severity < b.severity; });
   if (is_verbose()) {
-    for (const Note& note : notes) say("\n{}: {}.\n", label_of(note), note.text);
-    say("\n");
+    for (const Note& note : notes) print_formatted("\n{}: {}.\n", label_of(note), note.text);
+    print_formatted("\n");
     return;
   }
   while (!notes.empty() && notes.back().severity == Severity::detail) notes.pop_back();
@@ -198,13 +198,13 @@ void say_notes(Notes notes, std::size_t max_notes) {
       const std::size_t clauses = note.rfind("; ", bytes_of(note, max_width));
       line = clauses == none ? take_line(line, max_width, false) : line.substr(0, clauses);
     }
-    say("{} {}: {}{}\n", label, i + 1, line,
-        is_short ? "."
-        : is_cut ? " ..."
-                 : " ... (in full with --verbose)");
+    print_formatted("{} {}: {}{}\n", label, i + 1, line,
+                    is_short ? "."
+                    : is_cut ? " ..."
+                             : " ... (in full with --verbose)");
     is_cut = is_cut || !is_short;
   }
-  if (notes.size() > max_notes) say("more notes: {} (add --verbose)\n", notes.size() - max_notes);
+  if (notes.size() > max_notes) print_formatted("more notes: {} (add --verbose)\n", notes.size() - max_notes);
 }
 
 Notes with_warnings(const std::vector<std::string>& warnings, Notes notes) {
@@ -214,7 +214,7 @@ Notes with_warnings(const std::vector<std::string>& warnings, Notes notes) {
 
 void tell_choices(const Notes& choices, bool quiet) {
   for (const Note& choice : choices) {
-    if (!quiet) tell(format_note(choice));
+    if (!quiet) print_error(format_note(choice));
     automatic_choices.push_back(format_note(choice));
   }
 }
@@ -236,7 +236,7 @@ std::string_view wrote(const std::filesystem::path& file) {
   return existing_files().count(file) == 0 ? "wrote" : "overwrote";
 }
 
-void say_written(const std::vector<std::string>& files) {
+void print_written_files(const std::vector<std::string>& files) {
   std::string line;
   for (const std::string_view verb : {"wrote", "overwrote"}) {
     std::string names;
@@ -245,7 +245,7 @@ void say_written(const std::vector<std::string>& files) {
     }
     if (!names.empty()) line += fmt::format("{}{}{}", line.empty() ? "" : "; ", verb, names);
   }
-  if (!line.empty()) say("{}\n", line);
+  if (!line.empty()) print_formatted("{}\n", line);
 }
 
 }  // namespace pcor::tool

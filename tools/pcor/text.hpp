@@ -22,30 +22,30 @@ void set_program(const std::string& name_as_called);
 /// Prints text for people on standard output, with lines folded at the width of the terminal, verdicts of
 /// checks in colour and labels of notes bold unless NO_COLOR is set. If standard output is not a terminal the
 /// text is unchanged.
-void say_text(std::string_view text);
+void print_text(std::string_view text);
 
 /// Disables terminal formatting. MPI may connect its processes to a terminal.
-void say_plainly();
+void disable_terminal_style();
 
-/// Prints like `say_text`, formatted as by fmt::print.
+/// Prints like `print_text`, formatted as by fmt::print.
 template <class... Arguments>
-void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  say_text(fmt::format(format, std::forward<Arguments>(arguments)...));
+void print_formatted(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  print_text(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
 /// Prints an error in one line on standard error, on the first rank only. Failures to write are ignored.
-void tell(const std::string& message);
+void print_error(const std::string& message);
 
-/// Prints the unfinished line that `say` keeps.
-void finish_text();
+/// Prints the unfinished line that `print_text` keeps.
+void flush_text();
 
-/// Whether commands print all details: false until `say_everything`, by --verbose.
+/// Whether commands print all details: false until `print_all_details`, by --verbose.
 bool is_verbose();
-void say_everything();
+void print_all_details();
 
 /// Prints notes without full stops as numbered, shortened lines, warnings first, at most `max_notes`; all in
 /// full if `is_verbose`.
-void say_notes(Notes notes, std::size_t max_notes = 3);
+void print_notes(Notes notes, std::size_t max_notes = 3);
 
 /// Notes with warnings about the same result.
 Notes with_warnings(const std::vector<std::string>& warnings, Notes notes);
@@ -58,7 +58,7 @@ void tell_choices(const Notes& choices, bool quiet);
 /// and reports include them.
 const std::vector<std::string>& choices_of_this_run();
 
-/// Registers a file that exists before the run, for `say_written`.
+/// Registers a file that exists before the run, for `print_written_files`.
 void remember_existing(const std::filesystem::path& file);
 
 /// "wrote" or, for a file that existed before the run, "overwrote".
@@ -66,11 +66,11 @@ std::string_view wrote(const std::filesystem::path& file);
 
 /// Prints the names of written files on a separate line: "wrote best.toml; overwrote improve.html". Empty
 /// names and `-` are ignored.
-void say_written(const std::vector<std::string>& files);
+void print_written_files(const std::vector<std::string>& files);
 
 /// Line folded to lines of at most `width` characters, at blanks; continuation lines are indented, below the
 /// text if the line begins with a name in a separate column. Rows of a table are broken between columns. A
 /// command at the end stays on one line, so that it can be pasted.
-std::string folded(std::string_view line, std::size_t width);
+std::string wrapped(std::string_view line, std::size_t width);
 
 }  // namespace pcor::tool

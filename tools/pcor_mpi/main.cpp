@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
   pcor::MpiCommunicator comm;
-  pcor::tool::say_plainly();
+  pcor::tool::disable_terminal_style();
   const pcor::tool::Ending ending = pcor::tool::run_program(argc, argv, comm);
   MPI_Finalize();
   pcor::tool::end_process(ending);

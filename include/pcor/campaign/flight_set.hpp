@@ -29,14 +29,14 @@ struct FlightSetOptions {
 /// Information on a flight without its samples, available on every rank.
 struct FlightOutline {
   std::string aircraft{};       ///< stated in the file; may be empty
-  std::string family{};         ///< naming convention of its variables
+  std::string naming{};         ///< naming convention of its variables
   std::string time_variable{};  ///< empty for samples in memory
   std::string title{};          ///< project, number and date; otherwise the file name
   double begin = 0.0;           ///< s since 1970 UTC
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(aircraft, family, time_variable, title, begin);
+    archive(aircraft, naming, time_variable, title, begin);
   }
 };
 
@@ -71,7 +71,7 @@ class FlightSet {
   const std::filesystem::path& path(std::size_t flight) const;
 
   Communicator& comm() const { return *comm_; }
-  const FlightPartition& share() const { return *share_; }
+  const FlightPartition& partition() const { return *partition_; }
 
   /// Set of one flight, for this process only.
   FlightSet only(std::size_t flight) const;
@@ -112,10 +112,10 @@ class FlightSet {
   struct Entry;
   struct Memory;
 
-  FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightPartition share, Communicator& comm);
+  FlightSet(std::vector<std::shared_ptr<Entry>> entries, FlightPartition partition, Communicator& comm);
 
   std::vector<std::shared_ptr<Entry>> entries_{};
-  std::shared_ptr<const FlightPartition> share_;
+  std::shared_ptr<const FlightPartition> partition_;
   Communicator* comm_;
 };
 

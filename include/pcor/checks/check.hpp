@@ -29,9 +29,9 @@ std::string_view to_string(CheckVerdict verdict);
 struct TestStatistic {
   double value = 0.0;
   double standard_error = 0.0;
-  double matters = 0.0;  ///< tolerance: smallest value that matters
-  std::string unit{};    ///< unit, e.g. "hPa"
-  std::string what{};    ///< description, for example "from slow to fast"
+  double tolerance = 0.0;  ///< smallest value that matters
+  std::string unit{};      ///< unit, e.g. "hPa"
+  std::string what{};      ///< description, for example "from slow to fast"
   CheckVerdict verdict = CheckVerdict::inconclusive;
 };
 
@@ -39,7 +39,7 @@ template <class Field>
 void describe(const TestStatistic& self, Field& field) {
   field("value", self.value, "test statistic, expected to be zero", "see unit");
   field("stderr", self.standard_error, "standard error of the value", "see unit");
-  field("matters", self.matters, "tolerance: smallest value that matters", "see unit");
+  field("matters", self.tolerance, "tolerance: smallest value that matters", "see unit");
   field("unit", self.unit, "unit of the value");
   field("what", self.what, "description of the value");
   field("verdict", self.verdict, "verdict on this value alone");
@@ -48,18 +48,18 @@ void describe(const TestStatistic& self, Field& field) {
 /// Independent test of the correction, on all flights together.
 struct CheckResult {
   std::string name{};    ///< e.g. "reverse-heading"
-  bool ran = false;      ///< false: the flights do not permit the check
+  bool was_run = false;  ///< false: the flights do not permit the check
   std::string reason{};  ///< reason for which it did not run, and its requirements; empty if it ran
   CheckVerdict verdict = CheckVerdict::inconclusive;
-  std::vector<TestStatistic> judged{};  ///< all test statistics
-  TestStatistic key{};                  ///< the deciding statistic
+  std::vector<TestStatistic> statistics{};  ///< all test statistics
+  TestStatistic key{};                      ///< the deciding statistic
   /// Explanation of the verdict: value, standard error and tolerance, without full stop.
-  std::string decided{};
+  std::string explanation{};
   /// Reason for which the check is inconclusive regardless of its numbers; empty without such a reason.
-  std::string withheld{};
+  std::string inconclusive_reason{};
   std::string finding{};  ///< verdict as a sentence with its numbers
   /// Limitations: errors to which the check is insensitive, one sentence.
-  std::string cannot_see{};
+  std::string limitations{};
   std::vector<std::pair<std::string, double>> numbers{};  ///< values by name with unit, e.g. "offset_hpa"
   std::vector<ReportTable> tables{};                      ///< e.g. one row for each pair of legs
   Notes notes{};                                          ///< notes for the user, one sentence each
@@ -75,15 +75,15 @@ struct CheckResult {
 template <class Field>
 void describe(const CheckResult& self, Field& field) {
   field("name", self.name, "name of the check");
-  field("ran", self.ran, "whether the flights permit the check");
+  field("ran", self.was_run, "whether the flights permit the check");
   field("reason", self.reason, "reason for which the check did not run, and its requirements");
-  field("verdict", self.ran ? &self.verdict : nullptr, "consistent, inconsistent, inconclusive; null");
-  field("key", self.ran ? &self.key : nullptr, "deciding test statistic; null if it did not run");
-  field("judged", self.judged, "all test statistics");
-  field("decided", self.decided, "explanation of the verdict: value, standard error and tolerance");
+  field("verdict", self.was_run ? &self.verdict : nullptr, "consistent, inconsistent, inconclusive; null");
+  field("key", self.was_run ? &self.key : nullptr, "deciding test statistic; null if it did not run");
+  field("judged", self.statistics, "all test statistics");
+  field("decided", self.explanation, "explanation of the verdict: value, standard error and tolerance");
   field("numbers", self.numbers, "further results", "see the name");
   field("finding", self.finding, "verdict as a sentence");
-  field("cannot_see", self.cannot_see, "errors to which the check is insensitive");
+  field("cannot_see", self.limitations, "errors to which the check is insensitive");
   field.list("tables", self.tables, "tables of the report", [](const ReportTable& table, Field& of_table) {
     of_table("title", table.title, "title of the table");
     of_table("headers", table.headers, "names of the columns");

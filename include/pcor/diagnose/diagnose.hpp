@@ -21,11 +21,11 @@ namespace pcor {
 
 /// Outcome of a diagnosis.
 enum class Verdict {
-  silent,       ///< no missing effect detectable on these flights
-  identified,   ///< effects are missing, and each can be named
-  ambiguous,    ///< an effect is missing, but these flights do not separate it from others
-  partial,      ///< effects explain much of the residual, but significant structure remains
-  unexplained,  ///< significant structure that no effect explains
+  none_detected,  ///< no missing effect detectable on these flights
+  identified,     ///< effects are missing, and each can be named
+  ambiguous,      ///< an effect is missing, but these flights do not separate it from others
+  partial,        ///< effects explain much of the residual, but significant structure remains
+  unexplained,    ///< significant structure that no effect explains
 };
 
 /// Text for JSON and reports: "silent", "identified", "cannot be told apart", "partial", "unexplained".
@@ -94,14 +94,14 @@ struct Alias {
   std::string title;
   /// Correlation of the two after projection onto the model's coefficients, -1 to 1.
   double correlation = 0.0;
-  double chi2_less = 0.0;      ///< chi2 of the named effect minus chi2 of this one
-  double size_to_usual = 0.0;  ///< coefficient divided by its typical size; 0 if unknown
+  double chi2_difference = 0.0;  ///< chi2 of the named effect minus chi2 of this one
+  double relative_size = 0.0;    ///< coefficient divided by its typical size; 0 if unknown
   std::vector<CoefficientEstimate> estimates{};
-  double probability = 0.0;         ///< posterior probability among the named effect and its aliases, 0 to 1
-  ModelEffect correction{};         ///< effect with the estimated coefficients, ready for a model
-  std::vector<std::string> held{};  ///< see `Finding::held`
-  bool is_alike = false;            ///< see `Finding::is_alike`
-  std::size_t candidate = 0;        ///< index among the tested effects, of which each shape is one
+  double probability = 0.0;          ///< posterior probability among the named effect and its aliases, 0 to 1
+  ModelEffect correction{};          ///< effect with the estimated coefficients, ready for a model
+  std::vector<std::string> fixed{};  ///< see `Finding::fixed`
+  bool is_alike = false;             ///< see `Finding::is_alike`
+  std::size_t candidate = 0;         ///< index among the tested effects, of which each shape is one
 };
 
 template <class Field>
@@ -109,8 +109,8 @@ void describe(const Alias& self, Field& field) {
   field("effect", self.effect, "id of the effect");
   field("title", self.title, "title of the effect");
   field("correlation", self.correlation, "correlation with the named effect after projection onto the model");
-  field("chi2_less", self.chi2_less, "chi2 of the named effect minus chi2 of this one");
-  field("size_to_usual", self.size_to_usual, "size divided by the typical size; 0 if unknown");
+  field("chi2_less", self.chi2_difference, "chi2 of the named effect minus chi2 of this one");
+  field("size_to_usual", self.relative_size, "size divided by the typical size; 0 if unknown");
   field("estimates", self.estimates, "estimated coefficients");
 }
 
@@ -160,7 +160,7 @@ struct Finding {
   std::string title;
   std::vector<CoefficientEstimate> estimates{};
   /// Parameters absorbed by the model's coefficients: neutral in `effect`, fixed in a refit.
-  std::vector<std::string> held{};
+  std::vector<std::string> fixed{};
   double rms = 0.0;  ///< rms contribution to the residual over the samples used, hPa
   /// Largest of such contributions to the residual by a single reference, hPa: the first reference, or
   /// another one except wind and height. A drift of a transducer hardly changes the residual by a laser, but
@@ -177,8 +177,8 @@ struct Finding {
   double rms_after = 0.0;
   /// Decrease of the sum of squared whitened innovations in the same cross-validation, all references; its
   /// standard error follows from the scatter between minutes.
-  double gain = 0.0;
-  double gain_error = 0.0;
+  double chi2_reduction = 0.0;
+  double chi2_reduction_error = 0.0;
   double events = 0.0;               ///< number of separate events that support the finding
   std::vector<Evidence> evidence{};  ///< up to six, sorted by decreasing evidence
   std::vector<Alias> aliases{};      ///< sorted by decreasing probability
@@ -188,8 +188,8 @@ struct Finding {
   std::vector<std::string> variants{};
   /// Possible locations, e.g. "port", "other-system"; location of `effect` first.
   std::vector<std::string> components{};
-  double probability = 1.0;  ///< posterior probability among the finding and its aliases, 0 to 1
-  double times_usual = 0.0;  ///< size divided by the typical size; 0 if unknown
+  double probability = 1.0;    ///< posterior probability among the finding and its aliases, 0 to 1
+  double relative_size = 0.0;  ///< size divided by the typical size; 0 if unknown
   Advice advice{};
   /// Cause outside the catalogue that may replace it: "the atmosphere", "an unknown error"; otherwise empty.
   std::string rival{};
@@ -235,7 +235,7 @@ void describe(const Finding& self, Field& field) {
   field("shape", self.shape, "detected shape; empty: the shape of the catalogue");
   field("variants", self.variants, "shapes that fit as well");
   field("places", self.components, "possible instrument components");
-  field("times_usual", self.times_usual, "size divided by the typical size; 0 if unknown");
+  field("times_usual", self.relative_size, "size divided by the typical size; 0 if unknown");
   field("probability", self.probability, "posterior probability among the effect and its aliases");
   field("advice", self.advice.sentence, "manoeuvre that would separate the effect from its aliases");
   field("advice_details", self.advice, "the same advice in numbers");
@@ -421,7 +421,7 @@ struct UnnamedRole {
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::silent;
+  Verdict verdict = Verdict::none_detected;
   std::string reference;
   std::vector<Finding> findings{};  ///< sorted by decreasing gain in likelihood
   Unexplained unexplained;
@@ -488,7 +488,7 @@ void describe(const Diagnosis& self, Field& field) {
   field("notes", self.notes, "notes on the diagnosis");
 }
 
-/// Changes `silent` to `unexplained` if a held-out part has a significant bias.
+/// Changes `none_detected` to `unexplained` if a held-out part has a significant bias.
 void judge_held_out(Diagnosis& diagnosis);
 
 /// Searches for physical effects that a fitted model lacks.

@@ -32,7 +32,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
                         const WhatIf* what_if = nullptr);
 
 /// Whether an effect is more than five times its usual size: another cause is likely.
-inline bool is_unusually_large(const Finding& finding) { return finding.times_usual > 5.0; }
+inline bool is_unusually_large(const Finding& finding) { return finding.relative_size > 5.0; }
 
 /// Family, possible components and relative size of an effect: "family: zero; place: p-transducer or
 /// other-system; 15 times its usual size: ...".

@@ -223,7 +223,7 @@ struct RefitResult {
   const char* noise_label() const { return is_by_gps() ? "max noise" : "noise"; }
   /// Reason for which the model should not be used: the fit is worse than the input model, or a
   /// held-out part has a significant bias. Otherwise empty.
-  std::string worse{};
+  std::string rejection_reason{};
   std::vector<std::string> warnings{};  ///< reasons to doubt the fit, one sentence each
   Notes notes{};                        ///< notes for the user, one sentence each, by decreasing severity
 };
@@ -279,8 +279,8 @@ void describe(const RefitResult& self, Field& field) {
   field("flights", self.flights, "residual of each flight with the first reference");
   field("further", self.further, "residual of each flight with further references");
   field("masks", field.named(mask_info, self.masks), "samples with each mask");
-  if (field.has(!self.worse.empty()))
-    field("worse", self.worse, "reason for which the model should not be used; otherwise absent");
+  if (field.has(!self.rejection_reason.empty()))
+    field("worse", self.rejection_reason, "reason for which the model should not be used; otherwise absent");
   field("warnings", self.warnings, "reasons to doubt the fit");
   field("flaps_out", self.flaps_out, "residual of samples excluded because of flaps");
   field("notes", self.notes, "notes on the fit");

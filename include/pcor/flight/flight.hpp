@@ -169,7 +169,7 @@ class Flight {
   /// @throws Error as `read`, and if neither rate is a multiple of the other.
   RejectedCounts read_at_rate(int rate, const std::string& name, RecordBlock block,
                               const UnitConversion& conversion, double* out) const;
-  /// The same of all records: `records() * rate` values.
+  /// Reads all records at the given rate: `records() * rate` values.
   RejectedCounts read_at_rate(int rate, const std::string& name, const UnitConversion& conversion,
                               double* out) const;
 

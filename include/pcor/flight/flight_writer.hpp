@@ -51,7 +51,7 @@ enum class NetcdfFormat { classic, offset64, cdf5, netcdf4, netcdf4_classic };
 /// Time axis and format of a flight without input file.
 struct NewFlight {
   /// Time of the first record, seconds since 1970 UTC; `Time` counts from the midnight before it.
-  double first_time = 0;
+  double start_time = 0;
   bool whole_seconds = true;
   NetcdfFormat kind = NetcdfFormat::netcdf4;
 };

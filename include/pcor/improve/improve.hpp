@@ -115,14 +115,14 @@ struct Improvement {
   double rms_holdout = std::numeric_limits<double>::quiet_NaN();
   std::vector<ImproveStep> steps{};
   StopReason stop_reason = StopReason::nothing_missing;
-  std::string why_stopped{};  ///< the reason with its numbers, one sentence
-  RefitResult fit;            ///< fit of the model with the added effects, before the choice of alternatives
+  std::string stop_explanation{};  ///< the reason with its numbers, one sentence
+  RefitResult fit;  ///< fit of the model with the added effects, before the choice of alternatives
   std::vector<ImprovedFlight> flights{};
   /// True: rms_holdout is from held-out flights or parts; false: from cross-validation.
   bool holdout_is_flights = false;
   std::string output{};  ///< file of the final model, filled by the caller
   /// Reason for which the best model is worse than the input model; empty if it is better.
-  std::string worse{};
+  std::string rejection_reason{};
 };
 
 /// Finding that was added in a step, from the diagnosis before it; null if the step added no finding under
@@ -145,9 +145,10 @@ void describe(const Improvement& self, Field& field) {
   field(
       "stop_reason", self.stop_reason,
       "end of the selection: nothing missing, reference system, in model, unexplained, no gain or max steps");
-  field("why_stopped", self.why_stopped, "reason for the end of the selection, with its numbers");
+  field("why_stopped", self.stop_explanation, "reason for the end of the selection, with its numbers");
   field("holdout_is_flights", self.holdout_is_flights, "false: rms_holdout_hpa is cross-validated");
-  field("worse", self.worse, "reason for which the result is worse than the input model; otherwise empty");
+  field("worse", self.rejection_reason,
+        "reason for which the result is worse than the input model; otherwise empty");
   field("flaps_out", self.fit.flaps_out, "residual of samples excluded because of flaps");
   field("notes", self.fit.notes, "notes on the fit");
   describe_summary(self.fit, field);

@@ -47,14 +47,14 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
 
 /// Variable found for a role.
 struct InspectedRole {
-  std::string role;         ///< "vertical_speed"; also series without a role in a model, such as "longitude"
-  std::string variable;     ///< "VELD_GIN"
-  std::string unit;         ///< unit in the file, corrected by the data of its aircraft
-  bool is_turned = false;   ///< true: its sign is opposite to that of the role
-  int rate = 1;             ///< samples per record
-  double present = 0.0;     ///< fraction of valid samples, 0 to 1
-  std::string trap{};       ///< caveat for its users; may be empty
-  bool is_verified = true;  ///< the name is in a public document of the aircraft
+  std::string role;      ///< "vertical_speed"; also series without a role in a model, such as "longitude"
+  std::string variable;  ///< "VELD_GIN"
+  std::string unit;      ///< unit in the file, corrected by the data of its aircraft
+  bool is_sign_inverted = false;      ///< true: its sign is opposite to that of the role
+  int rate = 1;                       ///< samples per record
+  double present = 0.0;               ///< fraction of valid samples, 0 to 1
+  std::string caveat{};               ///< caveat for its users; may be empty
+  bool is_verified = true;            ///< the name is in a public document of the aircraft
   std::vector<std::string> others{};  ///< other variables that match the role
   std::string why{};                  ///< evidence, if the name is not one of the aircraft's; otherwise empty
 };
@@ -63,10 +63,11 @@ template <class Field>
 void describe(const InspectedRole& self, Field& field) {
   field("variable", self.variable, "variable of the flight");
   field("unit", self.unit, "unit in the file, corrected by the data of the aircraft");
-  field("sign", self.is_turned ? "-" : "+", "-: the sign of the variable is opposite to that of the role");
+  field("sign", self.is_sign_inverted ? "-" : "+",
+        "-: the sign of the variable is opposite to that of the role");
   field("rate", self.rate, "samples in a record");
   field("present", self.present, "fraction of valid samples");
-  field("trap", self.trap, "caveat for users of the variable");
+  field("trap", self.caveat, "caveat for users of the variable");
   field("verified", self.is_verified, "whether the name is in a public document of the aircraft");
   field("others", self.others, "other variables that match the role");
   field("why", self.why, "evidence, if the name is not one of the aircraft");
@@ -96,7 +97,7 @@ void describe(const Problem& self, Field& field) {
 struct MissingRole {
   std::string role;
   std::string description;
-  std::vector<std::string> looked_for;  ///< searched names of variables
+  std::vector<std::string> searched_names;  ///< searched names of variables
   /// Consequence, a clause without full stop; empty if the role is not needed.
   std::string cost;
   std::vector<std::string> effects;  ///< effects of the catalogue that cannot be fitted or diagnosed
@@ -105,7 +106,7 @@ struct MissingRole {
 template <class Field>
 void describe(const MissingRole& self, Field& field) {
   field("role", self.role, "role without a variable");
-  field("looked_for", self.looked_for, "names of variables that were searched");
+  field("looked_for", self.searched_names, "names of variables that were searched");
   field("cost", self.cost, "consequence; empty if the role is not needed");
   field("effects", self.effects, "effects that cannot be fitted or diagnosed");
 }
@@ -117,8 +118,8 @@ struct Inspection {
   std::string project{};
   std::string flight{};
   std::string institution{};
-  std::string family{};  ///< naming convention, e.g. "faam-core"
-  std::string family_title{};
+  std::string naming{};  ///< naming convention, e.g. "faam-core"
+  std::string naming_title{};
   std::vector<std::string> alike{};  ///< matching naming conventions; several: ambiguous, empty: unknown
   TimeAxis time{};
   std::size_t records = 0;
@@ -156,7 +157,7 @@ void describe(const Inspection& self, Field& field) {
   field("project", self.project, "project, from the attributes of the file");
   field("flight", self.flight, "number of the flight, from the attributes of the file");
   field("institution", self.institution, "institution, from the attributes of the file");
-  field("names_of", self.family, "naming convention of the variables");
+  field("names_of", self.naming, "naming convention of the variables");
   field("alike", self.alike, "matching naming conventions");
   const double highest_rate = self.rates.empty() ? 0.0 : self.rates.rbegin()->first / self.time.step;
   field("rate_hz", highest_rate, "highest rate of a variable");

@@ -41,12 +41,12 @@ struct LawInfo {
   std::string valid_from{};
   std::string valid_to{};
   /// Used operationally for flights of these dates by the operator of the aircraft.
-  bool in_processing = false;
+  bool operational = false;
   std::optional<double> rms_hpa{};
   std::string note{};
 
   /// True on a day from `valid_from` to `valid_to`, an ISO date.
-  bool holds_on(const std::string& day) const {
+  bool is_valid_on(const std::string& day) const {
     return (valid_from.empty() || valid_from <= day) && (valid_to.empty() || day <= valid_to);
   }
 };

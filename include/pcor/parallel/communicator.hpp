@@ -33,7 +33,7 @@ class Communicator {
   /// work
   /// @throws Error if ranks called `fail` instead: the error of the lowest `order`, then of the lowest rank.
   /// Error if the ranks are in different states.
-  std::vector<std::string> gather(const std::string& own, std::uint64_t state = 0);
+  std::vector<std::string> all_gather(const std::string& own, std::uint64_t state = 0);
 
   /// Fails while the other ranks gather; all throw the same error and may continue after it.
   /// @param order of the error in a serial run: 0 before any flight, then by flight
@@ -42,7 +42,7 @@ class Communicator {
   /// Last call of a rank, with or without an error, so that other ranks do not wait for it. No gather is
   /// possible after it, or after that of another rank.
   /// @return common error of all ranks, if any
-  std::optional<Error> leave(const std::optional<Error>& error = std::nullopt);
+  std::optional<Error> finalize(const std::optional<Error>& error = std::nullopt);
 
  private:
   struct Message;

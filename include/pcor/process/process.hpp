@@ -56,8 +56,8 @@ struct ProcessSummary {
   std::size_t samples = 0;
   std::size_t corrected = 0;  ///< samples in which both pressures could be corrected
   std::size_t gaps = 0;
-  double first_time = 0.0;  ///< seconds since 1970 UTC
-  double last_time = 0.0;
+  double start_time = 0.0;  ///< seconds since 1970 UTC
+  double end_time = 0.0;
   /// Minimum measured dynamic pressure of samples in flight, hPa: its value at `RegimeCriteria::flying_speed`
   /// at sea level in the standard atmosphere.
   double flying_dynamic_pressure = 0.0;
@@ -79,8 +79,8 @@ void describe(const ProcessSummary& self, Field& field) {
   field("aircraft", self.aircraft, "aircraft, from the attributes of the file");
   field("project", self.project, "project, from the attributes of the file");
   field("flight", self.flight, "number of the flight, from the attributes of the file");
-  field.time("start", self.first_time, "time of the first record");
-  field.time("end", self.last_time, "time of the last record");
+  field.time("start", self.start_time, "time of the first record");
+  field.time("end", self.end_time, "time of the last record");
   field("records", self.records, "number of records");
   field("rate", self.rate, "samples in a record");
   field("samples", self.samples, "number of samples");

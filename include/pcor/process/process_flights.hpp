@@ -58,8 +58,8 @@ struct ProcessFlightsOptions {
   bool if_stale = false;
   /// True: continue after a flight that cannot be read or lacks a variable of the model.
   bool skip_unreadable = false;
-  std::function<void(std::size_t task)> begins{};             ///< callback before each flight
-  std::function<void(const ProcessedFlight& flight)> ends{};  ///< callback after each flight
+  std::function<void(std::size_t task)> on_flight_start{};             ///< callback before each flight
+  std::function<void(const ProcessedFlight& flight)> on_flight_end{};  ///< callback after each flight
 };
 
 /// One task for each flight, with an output of the same file name in `folder`.

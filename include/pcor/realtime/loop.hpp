@@ -148,7 +148,7 @@ class Loop {
 
   /// True if a sample at `time` resets all functors: the first one, one after a gap, and one whose time does
   /// not increase.
-  bool starts_anew(double time) const noexcept {
+  bool is_discontinuity(double time) const noexcept {
     const double step = time - previous_time_;
     return !started_ || !(step > 0.0 && step <= max_step_);
   }
@@ -162,7 +162,7 @@ class Loop {
   void run(double time) noexcept {
     quality_.clear();
     double step = time - previous_time_;
-    if (starts_anew(time)) {
+    if (is_discontinuity(time)) {
       if (started_ || !is_finite(time))
         quality_.set(is_finite(step) && step > max_step_ ? Quality::after_gap : Quality::uneven_samples);
       step = missing<double>();

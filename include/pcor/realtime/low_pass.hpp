@@ -79,13 +79,13 @@ class LowPass final : public Functor {
   // The weight of the sample in the middle and of those 1, 2 ... samples from it.
   static std::vector<double> weights_at(double rate) {
     constexpr double pi = 180.0 * constants::radians_per_degree;
-    const std::size_t reach = delay(rate);
+    const std::size_t half_width = delay(rate);
     std::vector<double> weights{1.0};
     double sum = 1.0;
-    for (std::size_t i = 1; i <= reach; ++i) {
+    for (std::size_t i = 1; i <= half_width; ++i) {
       const auto from_middle = static_cast<double>(i);
       const double phase = 2.0 * pi * from_middle / (rate * cutoff_period);
-      const double window = 0.54 + 0.46 * std::cos(pi * from_middle / static_cast<double>(reach + 1));
+      const double window = 0.54 + 0.46 * std::cos(pi * from_middle / static_cast<double>(half_width + 1));
       weights.push_back(window * std::sin(phase) / phase);
       sum += 2.0 * weights.back();
     }

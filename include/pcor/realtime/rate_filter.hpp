@@ -113,8 +113,8 @@ class RateFilter {
     if (first == last) return false;
     // An extrapolation this far from the data is not meaningful.
     const double position = static_cast<double>(before_) - shift_;
-    const auto reach = static_cast<double>(bridge_);
-    if (position < static_cast<double>(first) - reach || position > static_cast<double>(last) + reach)
+    const auto margin = static_cast<double>(bridge_);
+    if (position < static_cast<double>(first) - margin || position > static_cast<double>(last) + margin)
       return false;
     double* const filled = filled_.data() + weights_.size();
     std::size_t known = first;

@@ -221,9 +221,9 @@ struct OutsideInterval {
   bool is_time_of_day = false;  ///< stated without a date, so for any flight
 };
 
-/// Intervals, of all kinds, that have no time in common with a flight from `first_time` to `last_time`.
-std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, double first_time,
-                                               double last_time);
+/// Intervals, of all kinds, that have no time in common with a flight from `start_time` to `end_time`.
+std::vector<OutsideInterval> intervals_outside(const UserIntervals& intervals, double start_time,
+                                               double end_time);
 
 /// Reads the user's intervals from a TOML file:
 ///
@@ -250,18 +250,18 @@ UserIntervals read_intervals(const std::filesystem::path& path);
 /// Reads the user's intervals from text; `name` replaces the file name in messages.
 UserIntervals read_intervals_text(std::string_view text, std::string_view name);
 
-/// Intervals with times of the day converted to seconds since 1970 UTC, for a flight from `first_time` to
-/// `last_time`: the start is on the day that places it in the flight or nearest to it, the end is the first
+/// Intervals with times of the day converted to seconds since 1970 UTC, for a flight from `start_time` to
+/// `end_time`: the start is on the day that places it in the flight or nearest to it, the end is the first
 /// such time after the start. Times after midnight are therefore those of the next day.
-UserIntervals placed(const UserIntervals& user, double first_time, double last_time);
+UserIntervals placed(const UserIntervals& user, double start_time, double end_time);
 
-/// Regimes of a flight from `first_time` to `last_time` (s since 1970 UTC) after the user's changes.
+/// Regimes of a flight from `start_time` to `end_time` (s since 1970 UTC) after the user's changes.
 ///
 /// Vetoes are applied first: detected intervals are cut by overlapping vetoes of their regime; manoeuvres are
 /// removed completely, and both legs of a reverse-heading pair. Then each added interval, cut to the flight,
 /// replaces intervals of the same regime, and an added phase replaces all phases. The user's pairs are
 /// numbered after the detected ones. `user.flight` and `user.exclude` are not used.
-std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double first_time,
-                            double last_time);
+std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double start_time,
+                            double end_time);
 
 }  // namespace pcor

@@ -84,7 +84,7 @@ class Residuals {
                           double* derivatives) const;
 
   /// Half-width of the window of samples on which a residual depends; zero if it depends on one sample only.
-  std::size_t reach() const;
+  std::size_t half_width() const;
 
   /// Derivatives at some samples of residuals with a window, with respect to coefficients whose effect varies
   /// from sample to sample: with the parameters a_k of the samples k, the sum of dr_i/da_k rate_k. Exact:
@@ -93,7 +93,7 @@ class Residuals {
   ///
   /// @param derivatives `directions.size()` columns with a value for each of the samples, column by column,
   /// hPa per unit of the coefficient
-  /// @pre `reach()` is not zero
+  /// @pre `half_width()` is not zero
   void differentiate_along(const std::vector<std::size_t>& samples, const double* parameters,
                            const std::vector<Direction>& directions, double* derivatives) const;
 

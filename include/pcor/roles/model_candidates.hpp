@@ -39,7 +39,7 @@ std::string doubt_of_dates(const LawInfo& law);
 std::string applicable_text(const std::vector<ModelCandidate>& laws);
 
 /// Models of a flight's aircraft among model files, sorted: applicable ones first; among these, operational
-/// ones (`LawInfo::in_processing`) first, then those without a doubt about their dates, then those of the
+/// ones (`LawInfo::operational`) first, then those without a doubt about their dates, then those of the
 /// pressures that the aircraft's data list first.
 /// The aircraft is identified by a common registration: "C-130 N130AR" and "N130AR". `notes` reports
 /// unreadable files.

@@ -205,10 +205,10 @@ struct SimulateOptions {
 };
 
 /// Leg with its simulated flight state.
-struct LegFlown {
+struct SimulatedLeg {
   std::string kind;         ///< kind in the scenario, e.g. "speed-run"
-  double first_time = 0.0;  ///< seconds since 1970 UTC
-  double last_time = 0.0;   ///< seconds since 1970 UTC
+  double start_time = 0.0;  ///< seconds since 1970 UTC
+  double end_time = 0.0;    ///< seconds since 1970 UTC
   double altitude = 0.0;    ///< mean, m
   double pressure = 0.0;    ///< mean, hPa
   double min_speed = 0.0;   ///< true airspeed, m/s
@@ -218,10 +218,10 @@ struct LegFlown {
 };
 
 template <class Field>
-void describe(const LegFlown& self, Field& field) {
+void describe(const SimulatedLeg& self, Field& field) {
   field("kind", self.kind, "kind of the leg in the scenario");
-  field.time("start", self.first_time, "first time of the leg");
-  field.time("end", self.last_time, "last time of the leg");
+  field.time("start", self.start_time, "first time of the leg");
+  field.time("end", self.end_time, "last time of the leg");
   field("altitude_m", self.altitude, "mean altitude");
   field("pressure_hpa", self.pressure, "mean pressure");
   field("airspeed_m_s", std::vector<double>{self.min_speed, self.max_speed},
@@ -237,9 +237,9 @@ struct SimulationSummary {
   std::uint64_t seed = 0;
   std::size_t records = 0;
   int rate = 1;
-  double first_time = 0.0;  ///< seconds since 1970 UTC
-  double last_time = 0.0;
-  std::vector<LegFlown> legs;
+  double start_time = 0.0;  ///< seconds since 1970 UTC
+  double end_time = 0.0;
+  std::vector<SimulatedLeg> legs;
   std::vector<std::string> variables;  ///< recorded variables
   std::vector<std::string> truth;      ///< true values, names with TRUE_
   std::vector<std::string> effects;    ///< ids of the simulated errors
@@ -254,8 +254,8 @@ void describe(const SimulationSummary& self, Field& field) {
   field("name", self.name, "name of the flight");
   field("aircraft", self.aircraft, "aircraft of the scenario");
   field("seed", self.seed, "seed of the random numbers");
-  field.time("start", self.first_time, "time of the first record");
-  field.time("end", self.last_time, "time of the last record");
+  field.time("start", self.start_time, "time of the first record");
+  field.time("end", self.end_time, "time of the last record");
   field("records", self.records, "number of records");
   field("rate", self.rate, "samples in a record");
   field("effects", self.effects, "ids of the simulated errors");

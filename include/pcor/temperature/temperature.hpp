@@ -245,7 +245,7 @@ struct TemperatureResult {
   std::size_t samples = 0;
   std::vector<FlightHeights> flights{};
   /// Reason for which the correction is rejected by its statistics; empty if accepted.
-  std::string worse{};
+  std::string rejection_reason{};
   std::vector<std::string> warnings{};  ///< warnings, one sentence each
   Notes notes{};                        ///< notes for the user, one sentence each, by decreasing severity
   Notes notes_on_degree{};              ///< the notes on the choice of the degree
@@ -296,7 +296,7 @@ void describe(const TemperatureResult& self, Field& field) {
     parts("spread_of_climbs_k", self.spread_of_climbs, "spread of climbs and descents; 0 if they agree");
     parts("spread_of_halves_k", self.spread_of_halves, "spread of the halves; 0 if they agree");
   });
-  field("worse", self.worse, "reason for which the correction is rejected; otherwise empty");
+  field("worse", self.rejection_reason, "reason for which the correction is rejected; otherwise empty");
   field("warnings", self.warnings, "warnings");
   field("notes", self.notes, "notes on the calibration");
 }

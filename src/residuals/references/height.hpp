@@ -10,7 +10,7 @@
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/moist_air.hpp>
-#include "residuals/references/neighbours.hpp"
+#include "residuals/references/windowed.hpp"
 #include "roles/jumps.hpp"
 #include "roles/pressure_height.hpp"
 #include "roles/recorded_series.hpp"
@@ -28,10 +28,10 @@ inline constexpr double height_window = 60.0;
 /// with the geopotential heights H of GPS: if the step of the model is too large, its pressure has fallen too
 /// far. In hPa. The factor before the brackets, which converts the unit, uses the model file: if it changed
 /// with the coefficients, a derivative would contain the residual, and so its noise.
-class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
+class HeightOnSamples final : public WindowedResidual<HeightOnSamples, 3> {
  public:
   HeightOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
-      : OfNeighbours(model, samples, height_window),
+      : WindowedResidual(model, samples, height_window),
         height_(*samples.reference.find(Quantity::altitude)),
         time_(samples.time),
         step_(samples.step) {
@@ -52,8 +52,8 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   }
 
   template <class S>
-  void find(const Run span, const std::vector<Parts<S>>& parts, const std::vector<std::size_t>& samples,
-            S* out) const {
+  void find(const IndexRange span, const std::vector<Parts<S>>& parts,
+            const std::vector<std::size_t>& samples, S* out) const {
     std::vector<S> risen(span.length(), S(0.0));  // height change, m, since the first sample
     std::vector<std::size_t> missing_steps(span.length(), 0);
     for (std::size_t k = 1; k < span.length(); ++k) {
@@ -67,9 +67,9 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
     }
     for (std::size_t i = 0; i < samples.size(); ++i) {
       out[i] = missing<S>();
-      if (samples[i] < span.first + reach() || samples[i] + reach() >= span.end) continue;
-      const std::size_t from = samples[i] - span.first - reach();
-      const std::size_t to = from + 2 * reach();
+      if (samples[i] < span.first + half_width() || samples[i] + half_width() >= span.end) continue;
+      const std::size_t from = samples[i] - span.first - half_width();
+      const std::size_t to = from + 2 * half_width();
       if (missing_steps[from] != missing_steps[to]) continue;
       const double climbed = height_[span.first + to] - height_[span.first + from];
       out[i] = S(pressure_of_height_[samples[i]]) * (risen[to] - risen[from] - S(climbed));
@@ -85,9 +85,9 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
   std::vector<double> pressure_of_height_{};  // hPa/m
 };
 
-class HeightReference final : public ReferenceOfNeighbours<HeightOnSamples> {
+class HeightReference final : public WindowedReference<HeightOnSamples> {
  public:
-  using ReferenceOfNeighbours::ReferenceOfNeighbours;
+  using WindowedReference::WindowedReference;
 
   std::string description() const override { return "hydrostatic height against GPS height"; }
   std::string name() const override { return "height"; }

@@ -69,7 +69,7 @@ class PressureReference final : public Reference {
                               flight.path().string(), variable_, meant.empty() ? "" : "; " + meant));
     }
     const UnitConversion conversion =
-        believed(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
+        within_plausible_range(flight.conversion(variable_, "hPa"), info_of(Quantity::static_pressure));
     flight.require_values(variable_);
     if (!of_model_.empty() && variable_ != of_model_) require_static(flight, notes);
     if (!of_model_.empty() && is_computed_from(flight, variable_, of_model_)) {

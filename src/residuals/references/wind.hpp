@@ -12,7 +12,7 @@
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
 #include "residuals/ground_velocity.hpp"
-#include "residuals/references/neighbours.hpp"
+#include "residuals/references/windowed.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -34,10 +34,10 @@ inline constexpr double wind_window = 900.0;
 ///
 /// Source: memo eq. 5-7, differentiated at constant total pressure. Samples with a frozen heading or ground
 /// velocity are excluded from the wind fit.
-class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
+class WindOnSamples final : public WindowedResidual<WindOnSamples, 1> {
  public:
   WindOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
-      : OfNeighbours(model, samples, wind_window),
+      : WindowedResidual(model, samples, wind_window),
         read_(samples.reference),
         heading_(*read_.find(Quantity::heading)),
         along_(ground_speed_along_heading()),
@@ -61,8 +61,8 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   }
 
   template <class S>
-  void find(const Run span, const std::vector<Parts<S>>& parts, const std::vector<std::size_t>& samples,
-            S* out) const {
+  void find(const IndexRange span, const std::vector<Parts<S>>& parts,
+            const std::vector<std::size_t>& samples, S* out) const {
     std::vector<Sums<S>> sums(span.length() + 1);  // sums over all previous samples
     for (std::size_t k = 0; k < span.length(); ++k) {
       sums[k + 1] = sums[k];
@@ -73,8 +73,8 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
       out[i] = missing<S>();
       if (!is_flying(samples[i])) continue;
       const std::size_t k = samples[i] - span.first;
-      const Sums<S>& before = sums[k - std::min(k, reach())];
-      const Sums<S>& after = sums[std::min(k + reach() + 1, span.length())];
+      const Sums<S>& before = sums[k - std::min(k, half_width())];
+      const Sums<S>& after = sums[std::min(k + half_width() + 1, span.length())];
       const S left = parts[k][0] - after.wind_along(heading_[samples[i]], before);
       out[i] = left / S(speed_of_defect(samples[i]));
     }
@@ -155,9 +155,9 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
   const std::vector<double>& dynamic_pressure_;
 };
 
-class WindReference final : public ReferenceOfNeighbours<WindOnSamples> {
+class WindReference final : public WindowedReference<WindOnSamples> {
  public:
-  using ReferenceOfNeighbours::ReferenceOfNeighbours;
+  using WindowedReference::WindowedReference;
 
   std::string description() const override { return "airspeed against ground speed and a steady wind"; }
   std::string name() const override { return "wind"; }

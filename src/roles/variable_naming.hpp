@@ -42,7 +42,7 @@ struct VariableNaming {
 
   /// A global attribute of a file and a word in it, without regard to case.
   std::vector<std::pair<std::string, std::string>> attributes{};
-  std::vector<std::string> variables{};  ///< variables that all files of the family have
+  std::vector<std::string> variables{};  ///< variables that all files of the convention have
 
   std::vector<PressurePair> measured{};   ///< pairs as measured, sorted by decreasing likelihood
   std::vector<PressurePair> processed{};  ///< pairs that the flight's own processing chose or corrected
@@ -51,7 +51,7 @@ struct VariableNaming {
   std::vector<Thermometer> thermometers{};  ///< sorted by decreasing likelihood
   std::map<std::string, std::string>
       units{};  ///< units of variables whose files state no unit, or whose sign is reversed
-  std::map<std::string, std::string> traps{};  ///< one-sentence caution about a variable
+  std::map<std::string, std::string> caveats{};  ///< one-sentence caution about a variable
 
   /// The variables that may hold a series, sorted by decreasing likelihood; empty for an unknown series.
   /// @param of name of a role, or of a series that no model reads (`series_named`)
@@ -61,21 +61,22 @@ struct VariableNaming {
   std::string unit_of(const std::string& variable) const;
 };
 
-/// All families. The NCAR family is first; its names are also used for a file of an unknown family.
-const std::vector<VariableNaming>& aircraft_families();
+/// All naming conventions. The one of NCAR is first; its names are also used for a file of an unknown
+/// convention.
+const std::vector<VariableNaming>& known_namings();
 
-/// The families that match a flight best, by a word in an attribute and by the variables. Several families if
-/// they match equally well; empty without a match.
-std::vector<const VariableNaming*> families_like(const Flight& flight);
+/// The conventions that match a flight best, by a word in an attribute and by the variables. Several
+/// conventions if they match equally well; empty without a match.
+std::vector<const VariableNaming*> matching_namings(const Flight& flight);
 
-/// The family whose names apply to a flight: the first that matches, otherwise NCAR.
-const VariableNaming& family_of(const Flight& flight);
+/// The convention whose names apply to a flight: the first that matches, otherwise NCAR.
+const VariableNaming& naming_of(const Flight& flight);
 
-/// The named family, or the family in a file if the name ends in ".toml". @throws Error with similar names if
-/// the family does not exist.
-const VariableNaming& family_named(const std::string& name);
+/// The named convention, or the convention in a file if the name ends in ".toml". @throws Error with similar
+/// names if the convention does not exist.
+const VariableNaming& naming_by_name(const std::string& name);
 
-/// Reads the text of a family. @throws Error "name:line:column: what is wrong; what to do"
-VariableNaming parse_family(std::string_view text, std::string_view name);
+/// Reads the text of a convention. @throws Error "name:line:column: what is wrong; what to do"
+VariableNaming parse_naming(std::string_view text, std::string_view name);
 
 }  // namespace pcor::internal

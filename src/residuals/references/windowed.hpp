@@ -31,18 +31,18 @@ namespace pcor::internal {
 /// and, with the parts of all samples of `span`, in which `samples` lie with their neighbours,
 ///
 ///     template <class S>
-///     void find(Run span, const std::vector<std::array<S, part_count>>& parts,
+///     void find(IndexRange span, const std::vector<std::array<S, part_count>>& parts,
 ///               const std::vector<std::size_t>& samples, S* out) const
 template <class Derived, std::size_t part_count>
-class OfNeighbours : public ReferenceOnSamples {
+class WindowedResidual : public ReferenceOnSamples {
  public:
   /// @param window of the samples on which a residual depends, s
-  OfNeighbours(const ModelOnSamples& model, const FlightSamples& samples, double window)
+  WindowedResidual(const ModelOnSamples& model, const FlightSamples& samples, double window)
       : model_(model),
         size_(samples.time.size()),
-        reach_(static_cast<std::size_t>(std::lround(0.5 * window / samples.step))) {}
+        half_width_(static_cast<std::size_t>(std::lround(0.5 * window / samples.step))) {}
 
-  std::size_t reach() const final { return reach_; }
+  std::size_t half_width() const final { return half_width_; }
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     find(block.samples, parameters, out);
@@ -55,7 +55,7 @@ class OfNeighbours : public ReferenceOnSamples {
   void differentiate_along(const std::vector<std::size_t>& samples, const double* parameters,
                            const std::vector<Direction>& directions, double* derivatives) const override {
     if (samples.empty()) return;
-    const Run span = span_of(samples);
+    const IndexRange span = span_of(samples);
     std::vector<std::size_t> requested;
     for (const Direction& direction : directions) requested.push_back(direction.parameter);
     std::sort(requested.begin(), requested.end());
@@ -101,13 +101,13 @@ class OfNeighbours : public ReferenceOnSamples {
  private:
   const Derived& derived() const { return static_cast<const Derived&>(*this); }
 
-  Run span_of(const std::vector<std::size_t>& samples) const {
+  IndexRange span_of(const std::vector<std::size_t>& samples) const {
     const auto [minimum, maximum] = std::minmax_element(samples.begin(), samples.end());
-    return {*minimum - std::min(*minimum, reach()), std::min(*maximum + reach() + 1, size_)};
+    return {*minimum - std::min(*minimum, half_width()), std::min(*maximum + half_width() + 1, size_)};
   }
 
   template <class S>
-  std::vector<Parts<S>> parts(const Run span, const S* parameters) const {
+  std::vector<Parts<S>> parts(const IndexRange span, const S* parameters) const {
     std::vector<Parts<S>> result;
     result.reserve(span.length());
     for (std::size_t k = span.first; k < span.end; ++k) result.push_back(derived().parts_of(k, parameters));
@@ -115,7 +115,7 @@ class OfNeighbours : public ReferenceOnSamples {
   }
 
   /// Derivatives of the parts with respect to each of the requested parameters.
-  std::vector<std::vector<Parts<double>>> slopes_of_parts(const Run span, const double* parameters,
+  std::vector<std::vector<Parts<double>>> slopes_of_parts(const IndexRange span, const double* parameters,
                                                           const std::vector<std::size_t>& requested) const {
     std::vector<std::vector<Parts<double>>> slopes(requested.size(),
                                                    std::vector<Parts<double>>(span.length()));
@@ -133,21 +133,21 @@ class OfNeighbours : public ReferenceOnSamples {
   template <class S>
   void find(const std::vector<std::size_t>& samples, const S* parameters, S* out) const {
     if (samples.empty()) return;
-    const Run span = span_of(samples);
+    const IndexRange span = span_of(samples);
     derived().find(span, parts(span, parameters), samples, out);
   }
 
   const ModelOnSamples& model_;
   std::size_t size_;
-  std::size_t reach_;
+  std::size_t half_width_;
 };
 
-/// Reference by `OnSamples`, which is `OfNeighbours` and requires the temperature, with variables that the
-/// compared model names.
+/// Reference by `OnSamples`, which is `WindowedResidual` and requires the temperature, with variables that
+/// the compared model names.
 template <class OnSamples>
-class ReferenceOfNeighbours : public Reference {
+class WindowedReference : public Reference {
  public:
-  explicit ReferenceOfNeighbours(ModelDefinition file) : file_(std::move(file)) {}
+  explicit WindowedReference(ModelDefinition file) : file_(std::move(file)) {}
 
   bool is_static_pressure() const override { return false; }
   bool is_of_one_sample() const override { return false; }

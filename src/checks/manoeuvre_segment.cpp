@@ -1,4 +1,4 @@
-#include "checks/flown.hpp"
+#include "checks/manoeuvre_segment.hpp"
 
 #include <fmt/format.h>
 
@@ -12,36 +12,38 @@
 
 namespace pcor::internal {
 
-std::vector<double> Flown::of(const std::vector<double>& series) const {
+std::vector<double> ManoeuvreSegment::of(const std::vector<double>& series) const {
   std::vector<double> values(records.size(), nan);
   if (series.empty()) return values;
   for (std::size_t i = 0; i < records.size(); ++i) values[i] = series[records[i]];
   return values;
 }
 
-double Flown::mean(const std::vector<double>& series) const { return mean_of(of(series)); }
+double ManoeuvreSegment::mean(const std::vector<double>& series) const { return mean_of(of(series)); }
 
-LeastSquares Flown::regression(const std::vector<double>& y,
-                               const std::vector<std::vector<double>>& x) const {
-  std::vector<std::vector<double>> columns{std::vector<double>(y.size(), 1.0), less_mean(time())};
-  for (const std::vector<double>& series : x) columns.push_back(less_mean(series));
+LeastSquares ManoeuvreSegment::regression(const std::vector<double>& y,
+                                          const std::vector<std::vector<double>>& x) const {
+  std::vector<std::vector<double>> columns{std::vector<double>(y.size(), 1.0), subtract_mean(time())};
+  for (const std::vector<double>& series : x) columns.push_back(subtract_mean(series));
   return least_squares(columns, y, time(), step());
 }
 
-std::string Flown::location() const {
+std::string ManoeuvreSegment::location() const {
   return fmt::format("{}, {} to {}", flight->air.samples->name, utc_text(interval.begin),
                      utc_text(interval.end, "%H:%M:%S"));
 }
 
-std::string Flown::label() const { return flight->air.samples->name + utc_text(interval.begin, " %H:%M"); }
+std::string ManoeuvreSegment::label() const {
+  return flight->air.samples->name + utc_text(interval.begin, " %H:%M");
+}
 
-std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime) {
-  std::vector<Flown> all;
+std::vector<ManoeuvreSegment> segments_of_regime(const CheckedFlights& flights, Regime regime) {
+  std::vector<ManoeuvreSegment> all;
   for (const CheckedFlight& flight : flights) {
     const std::vector<double>& time = flight.air.time();
     for (const Interval& interval : flight.air.samples->intervals) {
       if (interval.regime != regime) continue;
-      Flown flown{&flight, interval, {}};
+      ManoeuvreSegment flown{&flight, interval, {}};
       const auto first = std::lower_bound(time.begin(), time.end(), interval.begin);
       for (auto at = first; at != time.end() && *at < interval.end; ++at) {
         const auto record = static_cast<std::size_t>(at - time.begin());
@@ -69,7 +71,7 @@ std::vector<double> squares_of(std::vector<double> values) {
 }
 
 double standard_deviation(const std::vector<double>& values) {
-  return std::sqrt(mean_of(squares_of(less_mean(values))));
+  return std::sqrt(mean_of(squares_of(subtract_mean(values))));
 }
 
 std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
@@ -82,7 +84,7 @@ double direction_of(double east, double north) {
   return direction < 0.0 ? direction + 360.0 : direction;
 }
 
-std::vector<double> less_mean(std::vector<double> values) {
+std::vector<double> subtract_mean(std::vector<double> values) {
   const double mean = mean_of(values);
   for (double& value : values) value -= mean;
   return values;
@@ -105,7 +107,7 @@ std::string missing_for_tail_wind(const CheckedFlights& flights) {
   return "has heading, ground velocity and true airspeed together";
 }
 
-CheckResult not_flown(const CheckedFlights& flights, Regime regime, const Notes& notes) {
+CheckResult regime_not_found(const CheckedFlights& flights, Regime regime, const Notes& notes) {
   if (!notes.empty())
     return not_run(fmt::format("no {} can be used: {}", info_of(regime).name, notes.front().text));
   const std::string& aircraft = flights.front().air.samples->aircraft;

@@ -1,4 +1,4 @@
-#include "roles/aircraft_family.hpp"
+#include "roles/variable_naming.hpp"
 
 #include <gmock/gmock.h>
 
@@ -18,39 +18,38 @@ namespace {
 using testing::Contains;
 
 std::optional<Error> refusal_of(const std::string& text) {
-  return test::error_of([&] { parse_family(text, "mine.toml"); });
+  return test::error_of([&] { parse_naming(text, "mine.toml"); });
 }
 
 const std::string head = "format = \"pcor-aircraft/1\"\nname = \"mine\"\ntitle = \"my aircraft\"\n";
 
 TEST(VariableNaming, DataAreComplete) {
   std::set<std::string> names;
-  for (const VariableNaming& family : aircraft_families()) {
-    SCOPED_TRACE(family.name);
-    EXPECT_TRUE(names.insert(family.name).second);
-    EXPECT_FALSE(family.title.empty());
-    EXPECT_FALSE(family.source.empty()) << "names without a source are rumours";
-    EXPECT_FALSE(family.measured.empty());
-    EXPECT_FALSE(family.attributes.empty()) << "no file would be known";
-    for (const Thermometer& thermometer : family.thermometers)
+  for (const VariableNaming& naming : known_namings()) {
+    SCOPED_TRACE(naming.name);
+    EXPECT_TRUE(names.insert(naming.name).second);
+    EXPECT_FALSE(naming.title.empty());
+    EXPECT_FALSE(naming.source.empty()) << "names without a source are rumours";
+    EXPECT_FALSE(naming.measured.empty());
+    EXPECT_FALSE(naming.attributes.empty()) << "no file would be known";
+    for (const Thermometer& thermometer : naming.thermometers)
       EXPECT_NE(published_recovery_factor(thermometer.recovery), nullptr) << thermometer.variable;
     std::set<std::string> known;
-    for (const auto& [series, variables] : family.series) {
+    for (const auto& [series, variables] : naming.series) {
       ASSERT_NE(series_named(series), nullptr) << series;
       known.insert(variables.begin(), variables.end());
     }
-    for (const auto* pairs : {&family.measured, &family.processed}) {
+    for (const auto* pairs : {&naming.measured, &naming.processed}) {
       for (const PressurePair& pair : *pairs) known.insert({pair.static_pressure, pair.dynamic_pressure});
     }
-    for (const Thermometer& thermometer : family.thermometers) known.insert(thermometer.variable);
-    for (const auto& [variable, trap] : family.traps) EXPECT_THAT(known, Contains(variable));
-    for (const auto& [variable, unit] : family.units) {
+    for (const Thermometer& thermometer : naming.thermometers) known.insert(thermometer.variable);
+    for (const auto& [variable, trap] : naming.caveats) EXPECT_THAT(known, Contains(variable));
+    for (const auto& [variable, unit] : naming.units) {
       EXPECT_THAT(known, Contains(variable));
       EXPECT_TRUE(is_known_unit(unit)) << unit;
     }
   }
-  EXPECT_EQ(aircraft_families().front().name, "ncar")
-      << "whose names are used for a file of an unknown family";
+  EXPECT_EQ(known_namings().front().name, "ncar") << "whose names are used for a file of an unknown family";
 }
 
 TEST(VariableNaming, InvalidFilesAreRefused) {
@@ -75,11 +74,11 @@ TEST(VariableNaming, InvalidFilesAreRefused) {
 }
 
 TEST(VariableNaming, IsFoundByName) {
-  EXPECT_EQ(family_named("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
-  EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "unit of the file";
-  EXPECT_THAT(test::error_of([] { family_named("fam-core"); }),
+  EXPECT_EQ(naming_by_name("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
+  EXPECT_EQ(naming_by_name("faam-core").unit_of("ALT_GIN"), "") << "unit of the file";
+  EXPECT_THAT(test::error_of([] { naming_by_name("fam-core"); }),
               test::IsError(Error::Code::model, "fam-core", "faam-core"));
-  EXPECT_THAT(test::error_of([] { family_named("/nowhere/mine.toml"); }),
+  EXPECT_THAT(test::error_of([] { naming_by_name("/nowhere/mine.toml"); }),
               test::IsError(Error::Code::file, "/nowhere/mine.toml"));
 }
 

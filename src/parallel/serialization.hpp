@@ -36,17 +36,17 @@ namespace pcor::internal {
 
 /// A value as bytes, for another rank, which runs the same program on a processor of the same kind.
 template <class Value>
-std::string packed(const Value& value) {
+std::string serialized(const Value& value) {
   std::ostringstream stream;
   cereal::BinaryOutputArchive archive(stream);
   archive(value);
   return stream.str();
 }
 
-/// Reads packed values one after another, out of bytes that stay where they are.
-class Unpacking {
+/// Reads serialized values one after another, out of bytes that stay where they are.
+class Deserializer {
  public:
-  explicit Unpacking(const std::string& bytes) : buffer_(bytes) {}
+  explicit Deserializer(const std::string& bytes) : buffer_(bytes) {}
 
   template <class Value>
   Value next() {
@@ -69,8 +69,8 @@ class Unpacking {
 };
 
 template <class Value>
-Value unpacked(const std::string& bytes) {
-  return Unpacking(bytes).next<Value>();
+Value deserialized(const std::string& bytes) {
+  return Deserializer(bytes).next<Value>();
 }
 
 }  // namespace pcor::internal

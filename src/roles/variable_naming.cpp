@@ -1,4 +1,4 @@
-#include "roles/aircraft_family.hpp"
+#include "roles/variable_naming.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -39,19 +39,19 @@ class Reader final : TomlReader {
     require_format(root, "a naming convention", format);
     each(root, "",
          {{"format", [](const Entry&) {}},
-          {"name", [&](const Entry& entry) { family_.name = text(entry); }},
-          {"title", [&](const Entry& entry) { family_.title = text(entry); }},
-          {"source", [&](const Entry& entry) { family_.source = text(entry); }},
-          {"unverified", [&](const Entry& entry) { family_.unverified = texts(entry); }},
+          {"name", [&](const Entry& entry) { naming_.name = text(entry); }},
+          {"title", [&](const Entry& entry) { naming_.title = text(entry); }},
+          {"source", [&](const Entry& entry) { naming_.source = text(entry); }},
+          {"unverified", [&](const Entry& entry) { naming_.unverified = texts(entry); }},
           {"recognised", [&](const Entry& entry) { read_recognised(entry); }},
           {"pressures", [&](const Entry& entry) { read_pressures(entry); }},
           {"series", [&](const Entry& entry) { read_series(entry); }},
           {"thermometer", [&](const Entry& entry) { read_thermometers(entry); }},
-          {"units", [&](const Entry& entry) { family_.units = texts_by_name(entry); }},
-          {"traps", [&](const Entry& entry) { family_.traps = texts_by_name(entry); }}},
+          {"units", [&](const Entry& entry) { naming_.units = texts_by_name(entry); }},
+          {"traps", [&](const Entry& entry) { naming_.caveats = texts_by_name(entry); }}},
          {{"name", "the aircraft has no name; add name = \"...\""},
           {"title", "the aircraft has no title; add title = \"...\""}});
-    return std::move(family_);
+    return std::move(naming_);
   }
 
  private:
@@ -85,8 +85,8 @@ class Reader final : TomlReader {
 
   void read_recognised(const Entry& section) {
     each(table(section), "[recognised]",
-         {{"attributes", [&](const Entry& entry) { family_.attributes = pairs(entry); }},
-          {"variables", [&](const Entry& entry) { family_.variables = texts(entry); }}});
+         {{"attributes", [&](const Entry& entry) { naming_.attributes = pairs(entry); }},
+          {"variables", [&](const Entry& entry) { naming_.variables = texts(entry); }}});
   }
 
   void read_pressures(const Entry& section) {
@@ -94,20 +94,20 @@ class Reader final : TomlReader {
       for (auto& [pressure, dynamic] : pairs(entry)) to.push_back({std::move(pressure), std::move(dynamic)});
     };
     each(table(section), "[pressures]",
-         {{"measured", [&](const Entry& entry) { read(entry, family_.measured); }},
-          {"processed", [&](const Entry& entry) { read(entry, family_.processed); }}});
+         {{"measured", [&](const Entry& entry) { read(entry, naming_.measured); }},
+          {"processed", [&](const Entry& entry) { read(entry, naming_.processed); }}});
   }
 
   void read_series(const Entry& section) {
     for (const Entry& entry : entries_of(table(section), "[series]")) {
       if (series_named(entry.key) == nullptr) refuse(entry, names_of_series());
-      family_.series[entry.key] = texts(entry);
+      naming_.series[entry.key] = texts(entry);
     }
   }
 
   void read_thermometers(const Entry& section) {
     for (const toml::node& node : array(section, "tables [[thermometer]]")) {
-      Thermometer& thermometer = family_.thermometers.emplace_back();
+      Thermometer& thermometer = naming_.thermometers.emplace_back();
       each(as<toml::table>(node, "a table [[thermometer]] is required here"), "[[thermometer]]",
            {{"variable", [&](const Entry& entry) { thermometer.variable = text(entry); }},
             {"recovery_factor", [&](const Entry& entry) {
@@ -121,7 +121,7 @@ class Reader final : TomlReader {
     }
   }
 
-  VariableNaming family_;
+  VariableNaming naming_;
 };
 
 bool contains_word(const std::string& text, const std::string& word) {
@@ -129,14 +129,14 @@ bool contains_word(const std::string& text, const std::string& word) {
   return std::search(text.begin(), text.end(), word.begin(), word.end(), are_alike) != text.end();
 }
 
-/// Similarity of a flight to a family: 2 if an attribute matches, 1 if the variables match.
-int likeness(const VariableNaming& family, const Flight& flight) {
+/// Similarity of a flight to a convention: 2 if an attribute matches, 1 if the variables match.
+int likeness(const VariableNaming& naming, const Flight& flight) {
   const bool by_attribute =
-      std::any_of(family.attributes.begin(), family.attributes.end(), [&](const auto& attribute) {
+      std::any_of(naming.attributes.begin(), naming.attributes.end(), [&](const auto& attribute) {
         return contains_word(flight.attribute(attribute.first), attribute.second);
       });
-  const bool by_variables = !family.variables.empty() &&
-                            std::all_of(family.variables.begin(), family.variables.end(),
+  const bool by_variables = !naming.variables.empty() &&
+                            std::all_of(naming.variables.begin(), naming.variables.end(),
                                         [&](const std::string& variable) { return flight.has(variable); });
   return (by_attribute ? 2 : 0) + (by_variables ? 1 : 0);
 }
@@ -153,40 +153,40 @@ std::string VariableNaming::unit_of(const std::string& variable) const {
   return found == units.end() ? std::string() : found->second;
 }
 
-const std::vector<VariableNaming>& aircraft_families() {
+const std::vector<VariableNaming>& known_namings() {
   static const std::vector<VariableNaming> all{
-      parse_family(aircraft::ncar, "ncar.toml"),
-      parse_family(aircraft::faam_core, "faam-core.toml"),
-      parse_family(aircraft::halo_bahamas, "halo-bahamas.toml"),
-      parse_family(aircraft::noaa_wp_3d, "noaa-wp-3d.toml"),
-      parse_family(aircraft::wyoming_king_air, "wyoming-king-air.toml"),
+      parse_naming(aircraft::ncar, "ncar.toml"),
+      parse_naming(aircraft::faam_core, "faam-core.toml"),
+      parse_naming(aircraft::halo_bahamas, "halo-bahamas.toml"),
+      parse_naming(aircraft::noaa_wp_3d, "noaa-wp-3d.toml"),
+      parse_naming(aircraft::wyoming_king_air, "wyoming-king-air.toml"),
   };
   return all;
 }
 
-std::vector<const VariableNaming*> families_like(const Flight& flight) {
+std::vector<const VariableNaming*> matching_namings(const Flight& flight) {
   std::vector<const VariableNaming*> best;
   int maximum = 1;
-  for (const VariableNaming& family : aircraft_families()) {
-    const int here = likeness(family, flight);
+  for (const VariableNaming& naming : known_namings()) {
+    const int here = likeness(naming, flight);
     if (here < maximum) continue;
     if (here > maximum) best.clear();
     maximum = here;
-    best.push_back(&family);
+    best.push_back(&naming);
   }
   return best;
 }
 
-const VariableNaming& family_of(const Flight& flight) {
-  const std::vector<const VariableNaming*> like = families_like(flight);
-  return like.empty() ? aircraft_families().front() : *like.front();
+const VariableNaming& naming_of(const Flight& flight) {
+  const std::vector<const VariableNaming*> like = matching_namings(flight);
+  return like.empty() ? known_namings().front() : *like.front();
 }
 
-const VariableNaming& family_named(const std::string& name) {
+const VariableNaming& naming_by_name(const std::string& name) {
   std::vector<std::string> known;
-  for (const VariableNaming& family : aircraft_families()) {
-    if (family.name == name) return family;
-    known.push_back(family.name);
+  for (const VariableNaming& naming : known_namings()) {
+    if (naming.name == name) return naming;
+    known.push_back(naming.name);
   }
   constexpr std::string_view ending = ".toml";
   if (name.size() <= ending.size() || name.substr(name.size() - ending.size()) != ending) {
@@ -201,12 +201,12 @@ const VariableNaming& family_named(const std::string& name) {
   static std::mutex reading;
   static std::deque<std::pair<std::string, VariableNaming>> read;
   const std::lock_guard lock(reading);
-  for (const auto& [path, family] : read) {
-    if (path == name) return family;
+  for (const auto& [path, naming] : read) {
+    if (path == name) return naming;
   }
-  return read.emplace_back(name, parse_family(text_of_file(name, "an aircraft file"), name)).second;
+  return read.emplace_back(name, parse_naming(text_of_file(name, "an aircraft file"), name)).second;
 }
 
-VariableNaming parse_family(std::string_view text, std::string_view name) { return Reader(name).read(text); }
+VariableNaming parse_naming(std::string_view text, std::string_view name) { return Reader(name).read(text); }
 
 }  // namespace pcor::internal

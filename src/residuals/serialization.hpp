@@ -5,7 +5,7 @@
 
 #include <pcor/residuals/samples.hpp>
 #include <pcor/residuals/statistics.hpp>
-#include "parallel/packed.hpp"
+#include "parallel/serialization.hpp"
 #include "residuals/flight_statistics.hpp"
 
 /// Serialization of flight data for other ranks.

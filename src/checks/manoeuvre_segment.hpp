@@ -14,7 +14,7 @@
 namespace pcor::internal {
 
 /// Stretch of a flight with a manoeuvre, and its usable samples.
-struct Flown {
+struct ManoeuvreSegment {
   const CheckedFlight* flight = nullptr;
   Interval interval;
   std::vector<std::size_t> records;  ///< airborne records that are not excluded
@@ -35,7 +35,7 @@ struct Flown {
 };
 
 /// All stretches of all flights in the given regime.
-std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
+std::vector<ManoeuvreSegment> segments_of_regime(const CheckedFlights& flights, Regime regime);
 
 /// Minimum and maximum of the known values; NaN if all are missing.
 std::pair<double, double> range_of(const std::vector<double>& values);
@@ -46,7 +46,7 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
 /// Direction of a vector, deg, from 0 to 360.
 double direction_of(double east, double north);
 /// Values minus their mean.
-std::vector<double> less_mean(std::vector<double> values);
+std::vector<double> subtract_mean(std::vector<double> values);
 
 /// A number of each item. @param of_item function of an item, or pointer to its member
 template <class Items, class Function>
@@ -66,7 +66,7 @@ std::string missing_for_tail_wind(const CheckedFlights& flights);
 
 /// Result of a check whose flights have no manoeuvre that can be used: the first of the `notes` is the
 /// reason, otherwise the criterion of the regime.
-CheckResult not_flown(const CheckedFlights& flights, Regime regime, const Notes& notes = {});
+CheckResult regime_not_found(const CheckedFlights& flights, Regime regime, const Notes& notes = {});
 
 /// Column over all records of all flights. `series` returns the series of a flight, of its length or empty.
 ReportColumn column_of(const CheckedFlights& flights, std::string name, std::string title, std::string unit,
