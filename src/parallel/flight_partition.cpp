@@ -8,13 +8,24 @@ namespace pcor {
 
 namespace {
 
+/// Error of one flight.
+class FlightError : public Error {
+ public:
+  FlightError(const Error& error, std::size_t number) : Error(error), flight_(number) {}
+
+  std::size_t flight() const { return flight_; }  ///< its number
+
+ private:
+  std::size_t flight_;
+};
+
 /// @throws FlightError for an error of the work on a flight
 template <class Work>
 void attempt_flight(std::size_t flight, const Work& work) {
   try {
     work();
   } catch (const Error& error) {
-    throw internal::FlightError(error, flight);
+    throw FlightError(error, flight);
   }
 }
 
@@ -58,7 +69,7 @@ FlightPartition FlightPartition::part(std::size_t first, std::size_t count) cons
 void FlightPartition::attempt(const std::function<void()>& work) const {
   try {
     work();
-  } catch (const internal::FlightError& error) {
+  } catch (const FlightError& error) {
     comm_->fail(error, error.flight() + 1);
   } catch (const Error& error) {
     comm_->fail(error, 0);
@@ -79,7 +90,7 @@ void FlightPartition::visit(std::size_t threads,
     std::function<void()> work;
     try {
       attempt_flight(flight, [&] { work = prepare(flight); });
-    } catch (const internal::FlightError&) {
+    } catch (const FlightError&) {
       while (!working.empty()) finish_first();  // an earlier flight fails first
       throw;
     }

@@ -20,21 +20,6 @@
 
 namespace pcor {
 
-namespace internal {
-
-/// Error of one flight.
-class FlightError : public Error {
- public:
-  FlightError(const Error& error, std::size_t number) : Error(error), flight_(number) {}
-
-  std::size_t flight() const { return flight_; }  ///< its number
-
- private:
-  std::size_t flight_;
-};
-
-}  // namespace internal
-
 /// Flights of a list that each rank owns: no other rank reads them or keeps data of them.
 class FlightPartition {
  public:
@@ -88,7 +73,7 @@ class FlightPartition {
   /// Visits the flights of this rank in threads.
   /// @param prepare returns the work on a flight; it is called in this thread, in the order of the flights,
   /// and up to `threads` threads do the work
-  /// @throws FlightError of the first flight that failed
+  /// @throws Error of the first flight that failed, with its number for `attempt`
   void visit(std::size_t threads,
              const std::function<std::function<void()>(std::size_t flight)>& prepare) const;
 

@@ -134,7 +134,8 @@ void describe(const Checks& self, Field& field) {
 Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& model,
              const CheckOptions& options = {});
 
-/// Results of the checks for each flight separately: name, ran, reason, verdict, key and withheld only.
+/// Results of the checks for each flight separately: name, was_run, reason, verdict, key and
+/// inconclusive_reason only.
 /// @throws Error as `check`
 std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
                                                        const std::optional<ModelDefinition>& model,
