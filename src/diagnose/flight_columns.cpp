@@ -35,13 +35,19 @@ struct Testability {
 Testability testability_of(const FlightColumns& flight, const std::vector<double>& given,
                            const ColumnGroup& group) {
   Testability found;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (std::isnan(given[i])) continue;
-    const auto values = flight.candidates.row(as_index(i)).segment(group.first, group.count);
-    ++found.samples;
-    found.missing += values.allFinite() ? 0 : 1;
-    found.varies = found.varies || values.cwiseAbs().maxCoeff() > 0.0F;
+  std::vector<char> is_missing(given.size(), 0);
+  for (const auto& column : flight.candidates.middleCols(group.first, group.count).colwise()) {
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (std::isnan(given[i])) continue;
+      const float value = column[as_index(i)];
+      if (!std::isfinite(value)) is_missing[i] = 1;
+      found.varies = found.varies || std::abs(value) > 0.0F;
+    }
   }
+  found.samples =
+      given.size() - static_cast<std::size_t>(std::count_if(given.begin(), given.end(),
+                                                            [](double value) { return std::isnan(value); }));
+  found.missing = static_cast<std::size_t>(std::count(is_missing.begin(), is_missing.end(), 1));
   return found;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,8 +35,9 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
   }
 
   void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const override {
-    for (const std::size_t sample : samples)
-      *out++ = pressure_at(own_, sample, own_of(parameters)) - pressure_at(model_, sample, parameters);
+    const std::vector<Jet> of_system = pressures(own_, samples, own_of(parameters));
+    const std::vector<Jet> of_model = pressures(model_, samples, parameters);
+    std::transform(of_system.begin(), of_system.end(), of_model.begin(), out, std::minus<>());
   }
 
   std::vector<Batch::Input> columns() const override { return own_.columns(); }
@@ -52,9 +55,27 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
     return parameters + model_.parameters().size();
   }
 
-  Jet pressure_at(const ModelOnSamples& system, std::size_t sample, const Jet* parameters) const {
+  /// Without derivatives where the parameters of the system have none.
+  std::vector<Jet> pressures(const ModelOnSamples& system, const std::vector<std::size_t>& samples,
+                             const Jet* parameters) const {
+    std::vector<double> constants;
+    bool varies = false;
+    for (const Jet* each = parameters; each != parameters + system.parameters().size(); ++each) {
+      constants.push_back(each->a);
+      varies = varies || !each->v.isZero(0.0);
+    }
+    std::vector<Jet> result;
+    for (const std::size_t sample : samples) {
+      result.push_back(varies ? pressure_at(system, sample, parameters)
+                              : Jet(pressure_at(system, sample, constants.data())));
+    }
+    return result;
+  }
+
+  template <class S>
+  S pressure_at(const ModelOnSamples& system, std::size_t sample, const S* parameters) const {
     if (is_total()) return system.total_pressure(sample, parameters);
-    State<Jet> state;
+    State<S> state;
     return system.corrected_static_pressure(sample, parameters, state);
   }
 
