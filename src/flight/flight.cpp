@@ -18,6 +18,7 @@
 
 #include "base/phrasing.hpp"
 #include "base/quoting.hpp"
+#include "flight/block_cache.hpp"
 #include "flight/called_corrected.hpp"
 #include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
@@ -152,6 +153,7 @@ struct Flight::Implementation {
   std::unordered_map<std::string, std::size_t> index;
   std::unordered_map<int, RecordMeans> means;               // key: id of the variable
   std::unordered_map<std::string, std::string> attributes;  // attributes of the file, by requested name
+  BlockCache cache;
   std::vector<double> scratch;
   std::vector<double> flags;
 
@@ -333,8 +335,8 @@ struct Flight::Implementation {
     if (variable.refusal) throw *variable.refusal;
     require_records(variable.info.name, block);
     if (block.count == 0) return {};
-    read_numbers(variable.id, block, values);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
+    read_numbers(variable.id, block, count, values);
     for (const double marker : variable.missing_values)
       for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? nan : values[i];
     RejectedCounts excluded;
@@ -349,7 +351,7 @@ struct Flight::Implementation {
     for (const StatusFlags& unusable : variable.flags) {
       const std::size_t samples_of_flag = unusable.is_of_record() ? count / block.count : 1;
       flags.resize(count / samples_of_flag);
-      read_numbers(unusable.variable(), block, flags.data());
+      read_numbers(unusable.variable(), block, flags.size(), flags.data());
       for (std::size_t i = 0; i < count; ++i) {
         if (unusable.unusable(flags[i / samples_of_flag])) values[i] = nan;
       }
@@ -377,9 +379,11 @@ struct Flight::Implementation {
     }
   }
 
-  void read_numbers(int id, RecordBlock block, double* out) const {
-    const CurrentInput current(file->path());
-    file->read(id, block, out);
+  void read_numbers(int id, RecordBlock block, std::size_t count, double* out) {
+    cache.read(id, block, count, out, [&](double* numbers) {
+      const CurrentInput current(file->path());
+      file->read(id, block, numbers);
+    });
   }
 
   /// Times without the days after the records at which seconds of the day restart.
