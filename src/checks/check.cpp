@@ -51,7 +51,7 @@ std::string without_values(const Flight& flight, const ModelDefinition& model) {
 
 /// Pressure pair of the model, and another pair of the flight.
 struct Systems {
-  std::optional<PressurePair> own{};
+  std::optional<PressurePair> primary{};
   std::optional<PressurePair> other{};
 };
 
@@ -65,14 +65,14 @@ Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   // A corrected pair and the pair of the avionics are two systems if there is no further pair.
   const bool beside_avionics = pairs.size() == 1 && pairs.front().static_pressure == avionics_static_pressure;
   if (!corrected || beside_avionics) {
-    systems.own = of_model;
+    systems.primary = of_model;
   } else if (!pairs.empty()) {
-    systems.own = pairs.front();
+    systems.primary = pairs.front();
   }
   // Two pairs with one pitot have no redundant total pressures.
   const auto other = std::find_if(pairs.begin(), pairs.end(), [&](const PressurePair& pair) {
-    return systems.own && pair.static_pressure != systems.own->static_pressure &&
-           pair.dynamic_pressure != systems.own->dynamic_pressure;
+    return systems.primary && pair.static_pressure != systems.primary->static_pressure &&
+           pair.dynamic_pressure != systems.primary->dynamic_pressure;
   });
   if (other != pairs.end()) systems.other = *other;
   return systems;
@@ -88,12 +88,12 @@ CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelD
   result.air = read_flight_air(flights, number, model, options.mask);
   const PressurePair of_model = pair_of(model);
   const Systems systems = systems_of(flights[number], of_model);
-  if (systems.own) {
+  if (systems.primary) {
     result.measured.push_back(
-        *systems.own == of_model
+        *systems.primary == of_model
             ? measured(of_model.name(), result.air)
-            : measured(systems.own->name(),
-                       read_flight_air(flights, number, model_of(*systems.own), options.mask)));
+            : measured(systems.primary->name(),
+                       read_flight_air(flights, number, model_of(*systems.primary), options.mask)));
   }
   result.second_corrected = options.second && !options.second->model.effects.empty();
   std::optional<ModelDefinition> second = options.second;
@@ -231,10 +231,10 @@ Checks check(const FlightSet& flights, const std::optional<ModelDefinition>& mod
 std::vector<std::vector<CheckResult>> check_per_flight(const FlightSet& flights,
                                                        const std::optional<ModelDefinition>& model,
                                                        const CheckOptions& options) {
-  CheckOptions own = options;
-  own.progress = nullptr;
+  CheckOptions quiet = options;
+  quiet.progress = nullptr;
   return flights.partition().all_gather_flights<std::vector<CheckResult>>(
-      [&](std::size_t number) { return check(flights.only(number), model, own).results; });
+      [&](std::size_t number) { return check(flights.only(number), model, quiet).results; });
 }
 
 }  // namespace pcor

@@ -12,7 +12,7 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
                      const std::vector<double>& time, double step) {
   const std::size_t count = time.size();
   std::vector<std::vector<double>> columns(4, std::vector<double>(2 * count));
-  std::vector<double> left(2 * count);
+  std::vector<double> wind(2 * count);
   std::vector<double> both_times(2 * count);
   CircleFit circle;
   double before = nan;
@@ -27,8 +27,8 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
     columns[2][north] = -cosine;
     columns[3][i] = -airspeed[i] * cosine;
     columns[3][north] = airspeed[i] * sine;
-    left[i] = east_speed[i] - airspeed[i] * sine;
-    left[north] = north_speed[i] - airspeed[i] * cosine;
+    wind[i] = east_speed[i] - airspeed[i] * sine;
+    wind[north] = north_speed[i] - airspeed[i] * cosine;
     both_times[i] = time[i];
     // Shifted in time, so that the noise model treats it as a separate series.
     both_times[north] = time[i] + 2.0 * (time.back() - time.front()) + 1000.0 * step;
@@ -37,7 +37,7 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
       before = heading[i];
     }
   }
-  const LeastSquares fit = least_squares(columns, left, both_times, step);
+  const LeastSquares fit = least_squares(columns, wind, both_times, step);
   circle.east_wind = fit.coefficients[0];
   circle.north_wind = fit.coefficients[1];
   circle.airspeed_error = fit.coefficients[2];

@@ -108,8 +108,8 @@ double speed_at(const std::vector<double>& speed, std::size_t i) {
 
 /// Deviation of the GPS height from the height implied by pressure and temperature, within five minutes.
 struct Piece {
-  double squares = 0.0;    ///< sum of squares after the fit of a line in time and one in height, m2
-  double freedom = 0.0;    ///< degrees of freedom
+  double squares = 0.0;  ///< sum of squares after the fit of a line in time and one in height, m2
+  double degrees_of_freedom = 0.0;
   double gradient = 0.0;   ///< slope of the line in time, m per 100 km of distance
   Estimate lag{nan, nan};  ///< lag of the pressure relative to the height, s; NaN if the climb rate hardly
                            ///< changes
@@ -138,11 +138,12 @@ Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
   const Eigen::VectorXd fit = least_norm_solution(columns, departures);
   Piece piece;
   piece.squares = (departures - columns * fit).squaredNorm();
-  piece.freedom = static_cast<double>(samples) - 4.0;
+  piece.degrees_of_freedom = static_cast<double>(samples) - 4.0;
   piece.gradient = fit(1) / way / metres_per_gradient;
   const double swing = columns.col(3).maxCoeff() - columns.col(3).minCoeff();
   if (swing < min_swing) return piece;
-  const double variance = piece.squares / piece.freedom * inverse_of(columns.transpose() * columns)(3, 3);
+  const double variance =
+      piece.squares / piece.degrees_of_freedom * inverse_of(columns.transpose() * columns)(3, 3);
   piece.lag = {fit(3), std::sqrt(variance)};
   return piece;
 }
@@ -179,10 +180,10 @@ void note_lag(const std::vector<Piece>& pieces, Notes& notes) {
 void estimate_uncertainty(LayerOptions& uncertainty, const std::vector<Piece>& all,
                           const std::vector<Piece>& level, Notes& notes) {
   double squares = 0.0;
-  double freedom = 0.0;
+  double degrees_of_freedom = 0.0;
   for (const Piece& piece : all) {
     squares += piece.squares;
-    freedom += piece.freedom;
+    degrees_of_freedom += piece.degrees_of_freedom;
   }
   if (std::isnan(uncertainty.height_noise) && all.empty()) {
     uncertainty.height_noise = usual_height_noise;
@@ -190,7 +191,7 @@ void estimate_uncertainty(LayerOptions& uncertainty, const std::vector<Piece>& a
         "no segment of {:.0f} s is available to estimate the error of the GPS height; {} m is assumed",
         piece_time, usual_height_noise));
   } else if (std::isnan(uncertainty.height_noise)) {
-    uncertainty.height_noise = std::max(min_height_noise, std::sqrt(squares / freedom));
+    uncertainty.height_noise = std::max(min_height_noise, std::sqrt(squares / degrees_of_freedom));
     notes.push_back(
         fmt::format("the error of the GPS height is estimated as {:.2f} m: rms deviation from the pressure "
                     "height within {} segments of {:.0f} s",

@@ -141,9 +141,9 @@ double usual_step(const CheckedFlights& flights,
     const std::vector<double> here = series(flight);
     const auto known = std::count_if(here.begin(), here.end(), [](double x) { return std::isfinite(x); });
     if (known == 0) continue;
-    const auto alike = std::find_if(values.begin(), values.end(),
-                                    [&](const auto& each) { return has_step(flight, each.first); });
-    (alike == values.end() ? values[flight.air.step()] : alike->second) += known;
+    const auto same_step = std::find_if(values.begin(), values.end(),
+                                        [&](const auto& each) { return has_step(flight, each.first); });
+    (same_step == values.end() ? values[flight.air.step()] : same_step->second) += known;
   }
   const auto most = std::max_element(values.begin(), values.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });

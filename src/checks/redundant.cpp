@@ -78,11 +78,11 @@ constexpr double min_static_difference = 0.3;
 
 bool has_second(const CheckedFlight& flight) { return flight.second.has_value(); }
 
-std::vector<double> own(const CheckedFlight& flight) {
+std::vector<double> model_pressure(const CheckedFlight& flight) {
   return has_second(flight) ? flight.air.pressure : std::vector<double>{};
 }
 
-std::vector<double> other(const CheckedFlight& flight) {
+std::vector<double> second_pressure(const CheckedFlight& flight) {
   return has_second(flight) ? flight.second->pressure : std::vector<double>{};
 }
 
@@ -255,7 +255,7 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
         "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
         "PS_A/QC_A); --reference static:OTHER.toml names one with its correction");
   }
-  const RedundantFit fit = fit_of(redundant(flights, own, other));
+  const RedundantFit fit = fit_of(redundant(flights, model_pressure, second_pressure));
   if (std::isnan(fit.ordinary.slope)) {
     return not_run(
         fmt::format("{} and the model have too few values at the same time in the air", first->second_name));
@@ -278,7 +278,7 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   result.limitations =
       "The check does not detect errors common to both systems: errors of the reference of both fits (the "
       "scale of LAMS, the temperature), and effects that act equally on both ports.";
-  add_results(flights, "static-pressure", own, other,
+  add_results(flights, "static-pressure", model_pressure, second_pressure,
               {"static pressure of the model", "static pressure of " + first->second_name}, fit,
               fmt::format("Static pressure of {} against static pressure of the model", first->second_name),
               result);

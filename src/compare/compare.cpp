@@ -209,9 +209,9 @@ void add_variances(std::size_t model, const FlightPartition& partition,
   BinnedFlights flights;
   for (std::size_t f = 0; f < parts.size(); ++f) {
     static const BinnedResidual none;
-    const BinnedResidual& own = partition.is_local(f) ? records[f][model].residual : none;
-    flights.bins.push_back(own.bins());
-    flights.residuals.push_back(own.means());
+    const BinnedResidual& residual = partition.is_local(f) ? records[f][model].residual : none;
+    flights.bins.push_back(residual.bins());
+    flights.residuals.push_back(residual.means());
     flights.reference.push_back(0);
   }
   flights.outlines = partition.all_gather_flights<NoiseFlight>(
@@ -223,12 +223,12 @@ void add_variances(std::size_t model, const FlightPartition& partition,
   fit.columns = [&](std::size_t f) { return Eigen::MatrixXd::Ones(flights.residuals[f].size(), 1); };
   fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
   const std::vector<NoiseModel> noise = noise_of_flights(
-      partition, flights, fit, [&partition](const auto& bins, const auto& columns, const auto& left) {
+      partition, flights, fit, [&partition](const auto& bins, const auto& columns, const auto& residuals) {
         constexpr std::size_t enough = 6;
         std::vector<NoiseFlight> outlines;
-        for (const Binning& own : bins) outlines.push_back(noise_flight_of(own));
+        for (const Binning& binning : bins) outlines.push_back(noise_flight_of(binning));
         const std::vector<std::size_t> few = flights_for_noise(outlines, enough);
-        return expected_noise(entries_of(bins, few), entries_of(columns, few), entries_of(left, few),
+        return expected_noise(entries_of(bins, few), entries_of(columns, few), entries_of(residuals, few),
                               partition.threads());
       });
   const auto variances = partition.map<std::vector<double>>(
@@ -312,13 +312,13 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   if (result.masks[0] == 0) return result;
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     const auto& [compared, reference, rank] = pairings[m];
-    const std::string own = compared->model.variable_of(Quantity::static_pressure);
+    const std::string static_pressure = compared->model.variable_of(Quantity::static_pressure);
     const std::string circular = circular_pressure(flights, compared->model, *reference);
-    if (reference->model() != nullptr && !circular.empty() && circular == own) {
+    if (reference->model() != nullptr && !circular.empty() && circular == static_pressure) {
       result.notes.push_back(warning_note(
           fmt::format("give a reference with another static pressure: {} uses {}, as the model "
                       "does; the residual of '{}' is the difference of two laws and does not test it",
-                      reference->name(), own, compared->name)));
+                      reference->name(), static_pressure, compared->name)));
     }
     add_variances(m, flights.partition(), records, parts);
     ModelSums sums;

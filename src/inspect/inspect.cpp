@@ -327,9 +327,9 @@ class Look {
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     // A model has one temperature and one humidity.
     constexpr std::array temperatures{Quantity::recovery_temperature, Quantity::ambient_temperature};
-    const auto has_another = [&has](Quantity role, const auto& alike) {
-      return std::find(alike.begin(), alike.end(), role) != alike.end() &&
-             std::any_of(alike.begin(), alike.end(), has);
+    const auto has_another = [&has](Quantity role, const auto& alternatives) {
+      return std::find(alternatives.begin(), alternatives.end(), role) != alternatives.end() &&
+             std::any_of(alternatives.begin(), alternatives.end(), has);
     };
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);

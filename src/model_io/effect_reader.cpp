@@ -233,8 +233,8 @@ class EffectReader final : TomlReader {
       const Quantity role = role_of_variable(file_, name);
       if (role == Quantity::count) continue;
       const std::string role_name(info_of(role).name);
-      const Names& own = effect.parameter_names;
-      if (std::find(own.begin(), own.end(), role_name) != own.end()) {
+      const Names& names = effect.parameter_names;
+      if (std::find(names.begin(), names.end(), role_name) != names.end()) {
         fail(*parameters.node, "{} is a parameter of effect {} and the role of {}; rename the parameter",
              quote(role_name), quote(effect.id), name);
       }

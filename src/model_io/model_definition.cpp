@@ -110,8 +110,8 @@ ParameterFit ModelDefinition::fit(std::size_t effect, std::size_t parameter) con
 }
 
 Bounds ModelDefinition::bounds(std::size_t effect, std::size_t parameter) const {
-  const std::optional<Bounds> own = fit(effect, parameter).bounds;
-  if (own) return *own;
+  const std::optional<Bounds> fit_bounds = fit(effect, parameter).bounds;
+  if (fit_bounds) return *fit_bounds;
   const ModelEffect& which = model.effects[effect];
   const EffectInfo* const info = effect_named(which.id);
   if (which.is_formula() || info == nullptr) return {};

@@ -22,8 +22,8 @@ MpiCommunicator::MpiCommunicator() {
   size_ = static_cast<std::size_t>(size);
 }
 
-std::vector<std::string> MpiCommunicator::exchange(const std::string& own) {
-  const std::uint64_t length = own.size();
+std::vector<std::string> MpiCommunicator::exchange(const std::string& local) {
+  const std::uint64_t length = local.size();
   std::vector<std::uint64_t> lengths(size_);
   MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
   const std::size_t maximum = max_at_once / size_;
@@ -50,12 +50,12 @@ std::vector<std::string> MpiCommunicator::exchange(const std::string& own) {
     std::vector<int> offsets;
     int end = 0;
     for (const std::uint64_t of_member : lengths) {
-      const std::size_t left = of_member > first ? of_member - first : 0;
-      counts.push_back(static_cast<int>(std::min(left, maximum)));
+      const std::size_t remaining = of_member > first ? of_member - first : 0;
+      counts.push_back(static_cast<int>(std::min(remaining, maximum)));
       offsets.push_back(end);
       end += counts.back();
     }
-    MPI_Allgatherv(own.data() + std::min(first, own.size()), counts[rank_], MPI_BYTE, bytes.data(),
+    MPI_Allgatherv(local.data() + std::min(first, local.size()), counts[rank_], MPI_BYTE, bytes.data(),
                    counts.data(), offsets.data(), MPI_BYTE, MPI_COMM_WORLD);
     for (std::size_t member = 0; member < size_; ++member)
       all[member].append(bytes, static_cast<std::size_t>(offsets[member]),

@@ -43,11 +43,11 @@ struct Communicator::Message {
   }
 };
 
-std::vector<Communicator::Message> Communicator::talk(const Message& own) {
+std::vector<Communicator::Message> Communicator::talk(const Message& local) {
   if (has_parted_)
     throw parted_with_ ? *parted_with_ : Error(Error::Code::system, "another process of this run has ended");
   std::vector<Message> all;
-  for (const std::string& bytes : exchange(serialized(own))) all.push_back(deserialized<Message>(bytes));
+  for (const std::string& bytes : exchange(serialized(local))) all.push_back(deserialized<Message>(bytes));
   has_parted_ = std::any_of(all.begin(), all.end(), [](const Message& each) { return each.is_last; });
   if (const Message* const error = Message::first_error(all)) {
     const Error agreed(error->code, error->text);
@@ -68,11 +68,11 @@ std::vector<Communicator::Message> Communicator::talk(const Message& own) {
   return all;
 }
 
-std::vector<std::string> Communicator::all_gather(const std::string& own, std::uint64_t state) {
-  if (size() == 1) return {own};
+std::vector<std::string> Communicator::all_gather(const std::string& local, std::uint64_t state) {
+  if (size() == 1) return {local};
   Message message;
   message.state = state;
-  message.part = own;
+  message.part = local;
   std::vector<std::string> parts;
   for (Message& each : talk(message)) parts.push_back(std::move(each.part));
   return parts;

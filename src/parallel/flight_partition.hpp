@@ -62,8 +62,8 @@ class FlightPartition {
     if (comm_->size() > 1)
       gather(
           [&parts](std::size_t flight) {
-            const Part own = std::move(parts[flight]);
-            return internal::serialized(own);
+            const Part part = std::move(parts[flight]);
+            return internal::serialized(part);
           },
           internal::digest_of(typeid(Part).name(), state + flights()),
           [&parts](std::size_t flight, internal::Deserializer& rank) { parts[flight] = rank.next<Part>(); });

@@ -32,17 +32,18 @@ constexpr std::size_t delta_column = 0;
 constexpr std::size_t static_column = 2;
 constexpr std::size_t dynamic_column = 3;
 
-constexpr const char* own_difference = "own_difference";
+constexpr const char* difference_from_original = "own_difference";
 
 /// Static pressure corrected in the flight file, hPa; empty if absent.
-RecordedSeries own_static_pressure(const Flight& input) {
+RecordedSeries original_static_pressure(const Flight& input) {
   const VariableNaming& naming = naming_of(input);
-  RecordedSeries own{processed_static_pressure(input, naming)};
-  if (own.variable.empty()) return own;
-  own.values = read_values(input, own.variable,
-                           input.conversion(own.variable, "hPa", "", naming.unit_of(own.variable)))
-                   .values;
-  return own;
+  RecordedSeries original{processed_static_pressure(input, naming)};
+  if (original.variable.empty()) return original;
+  original.values =
+      read_values(input, original.variable,
+                  input.conversion(original.variable, "hPa", "", naming.unit_of(original.variable)))
+          .values;
+  return original;
 }
 
 /// Records with extended flaps; nullopt if unknown.
@@ -115,14 +116,14 @@ class Outputs {
  private:
   void add_difference(const ProcessedFlight& processed) {
     const Flight input(processed.input);
-    const RecordedSeries own = own_static_pressure(input);
-    Series difference = own.values;
+    const RecordedSeries original = original_static_pressure(input);
+    Series difference = original.values;
     const std::size_t first = report_.flight_starts.back();
     for (std::size_t i = 0; i < difference.size(); ++i)
       difference[i] = columns_[static_column].values[first + i] - difference[i];
     append(columns_.back(), difference);
     if (difference.empty()) return differences_.flights_without.push_back(report_.flight_names.back());
-    differences_.variables.insert(own.variable);
+    differences_.variables.insert(original.variable);
     if (processed.state != FlightState::processed) return;  // its summary is empty
     for (std::size_t i = 0; i < difference.size(); ++i) {
       const double measured =
@@ -147,7 +148,7 @@ class Outputs {
       {"MACHX", "Mach number", "", {}},
       {"ATX", "ambient temperature", "degC", {}},
       {"TASX", "true airspeed", "m/s", {}},
-      {own_difference, "static pressure minus that of the original processing", "hPa", {}}};
+      {difference_from_original, "static pressure minus that of the original processing", "hPa", {}}};
   FlapsDifferences differences_{};
 };
 
@@ -187,7 +188,7 @@ void add_pictures(Report& report, const FlapsDifferences& differences) {
                                                    ? ""
                                                    : " Flights without this variable: " +
                                                          join_list(differences.flights_without) + "."),
-                                   {own_difference},
+                                   {difference_from_original},
                                    "difference of static pressure"});
   if (ReportTable table = differences_table(differences); !table.rows.empty())
     report.items.emplace_back(std::move(table));

@@ -45,8 +45,8 @@ std::vector<double> combination(const std::vector<double>& series, double max_rm
   }
   if (rows < min_rows) return {};
   const Row solution = pseudo_solution(normal, right);
-  const double left = std::max(0.0, squares - solution.dot(right));
-  if (!(std::sqrt(left / static_cast<double>(rows)) < max_rms)) return {};
+  const double residual_squares = std::max(0.0, squares - solution.dot(right));
+  if (!(std::sqrt(residual_squares / static_cast<double>(rows)) < max_rms)) return {};
   std::vector<double> result(series.size());
   for (std::size_t i = 0; i < series.size(); ++i) result[i] = row_of(i).dot(solution);
   return result;
@@ -110,11 +110,11 @@ std::vector<double> predicted_by_height(std::vector<double> static_pressure,
         return Row{1.0, z, z * z, z * z * z, z * z * z * z};
       });
   if (predicted.empty()) return static_pressure;
-  std::vector<double> left(logarithm.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = logarithm[i] - predicted[i];
-  const std::vector<double> slow = slow_part_of(left, step);
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    if (std::abs(left[i] - slow[i]) < max_departure * max_misfit_of_height)
+  std::vector<double> residual(logarithm.size());
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = logarithm[i] - predicted[i];
+  const std::vector<double> slow = slow_part_of(residual, step);
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (std::abs(residual[i] - slow[i]) < max_departure * max_misfit_of_height)
       static_pressure[i] = std::exp(predicted[i] + slow[i]);
   }
   return static_pressure;

@@ -74,9 +74,9 @@ void load(Archive& archive, std::shared_ptr<const pcor::FlightSamples>& samples)
   bool is_there = false;
   archive(is_there);
   if (!is_there) return samples.reset();
-  auto own = std::make_shared<pcor::FlightSamples>();
-  archive(*own);
-  samples = std::move(own);
+  auto result = std::make_shared<pcor::FlightSamples>();
+  archive(*result);
+  samples = std::move(result);
 }
 
 }  // namespace cereal

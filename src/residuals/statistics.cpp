@@ -53,15 +53,15 @@ Statistics ResidualSums::statistics(bool level_is_determined) const {
     const Eigen::Index nuisances = by_gps.cols() - 3;
     Eigen::MatrixXd products = by_gps;
     products.diagonal().head(nuisances).array() += 1.0;  // their priors
-    const Eigen::MatrixXd left = products_after(products, nuisances);
+    const Eigen::MatrixXd reduced = products_after(products, nuisances);
     constexpr double max_bias = 5.0;  // rms; wind and zero of a part imitate a larger bias
-    const bool has_rows = left(1, 1) > rank_limit * left(0, 0);
-    const Eigen::Vector2d both = pseudo_solution(left.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
+    const bool has_rows = reduced(1, 1) > rank_limit * reduced(0, 0);
+    const Eigen::Vector2d both = pseudo_solution(reduced.topLeftCorner(2, 2), Eigen::Vector2d::Ones());
     // A residual beyond the noise of GPS makes the error larger (Birge 1932, Physical Review 40, 207).
     const double birge = std::fmax(1.0, result.scatter() / result.noise_rms);
     result.bias_error = has_rows ? birge * std::sqrt(both.sum()) : nan;
     // Sign of a residual: positive if delta-p is too small. An undetermined level stays as measured.
-    const double by_level = both.dot(left.col(2).head(2));
+    const double by_level = both.dot(reduced.col(2).head(2));
     if (!has_rows)
       result.bias = nan;
     else if (level_is_determined && result.bias_error < max_defect_error &&

@@ -74,11 +74,11 @@ bool are_feet(const std::vector<double>& pressure, const std::vector<double>& he
 
 /// The unit that explains a pressure of `ratio` times the expected one. Empty if no unit does, or only its
 /// own.
-std::string unit_that_fits(const std::string& own, double ratio) {
+std::string unit_that_fits(const std::string& current_unit, double ratio) {
   for (const auto& [unit, within] :
        {std::pair("hPa", 0.1), std::pair("Pa", 0.1), std::pair("kPa", 0.1), std::pair("mmHg", 0.05),
         std::pair("inHg", 0.05), std::pair("psi", 0.05)}) {
-    const double scale = UnitConversion::between(unit, own, {}).scale();
+    const double scale = UnitConversion::between(unit, current_unit, {}).scale();
     if (std::abs(scale - 1.0) > within && std::abs(ratio * scale - 1.0) < within) return unit;
   }
   return {};

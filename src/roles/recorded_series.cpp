@@ -16,11 +16,11 @@ namespace {
 void try_variable(const Flight& flight, const std::string& variable, const std::string& stated,
                   const QuantityInfo& info, RecordedSeries& series) {
   if (!series.values.empty() || !flight.has(variable) || !flight.variable(variable).is_series) return;
-  const std::string own = stated.empty() ? flight.variable(variable).units : stated;
-  if (own.empty() && series.without_unit.empty()) series.without_unit = variable;
+  const std::string unit = stated.empty() ? flight.variable(variable).units : stated;
+  if (unit.empty() && series.without_unit.empty()) series.without_unit = variable;
   try {
     const UnitConversion conversion =
-        UnitConversion::between(own, std::string(info.unit), {variable, flight.path().string(), ""});
+        UnitConversion::between(unit, std::string(info.unit), {variable, flight.path().string(), ""});
     std::vector<double> values =
         read_values(flight, variable, within_plausible_range(conversion, info)).values;
     if (std::all_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return;

@@ -37,9 +37,9 @@ double resolution_of(const std::vector<double>& values) {
   double step = range;
   for (std::size_t i = 1; i < sorted.size(); ++i) step = std::min(step, sorted[i] - sorted[i - 1]);
   for (const double value : sorted) {
-    const double left = std::remainder(value - sorted.front(), step);
+    const double remainder = std::remainder(value - sorted.front(), step);
     const double count = (value - sorted.front()) / step;
-    if (std::abs(left) > rounding * (1.0 + count) + 0.02 * step) return 0.0;
+    if (std::abs(remainder) > rounding * (1.0 + count) + 0.02 * step) return 0.0;
   }
   return step;
 }

@@ -125,8 +125,10 @@ class Reader final : TomlReader {
 };
 
 bool contains_word(const std::string& text, const std::string& word) {
-  const auto are_alike = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
-  return std::search(text.begin(), text.end(), word.begin(), word.end(), are_alike) != text.end();
+  const auto equal_ignoring_case = [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  };
+  return std::search(text.begin(), text.end(), word.begin(), word.end(), equal_ignoring_case) != text.end();
 }
 
 /// Similarity of a flight to a convention: 2 if an attribute matches, 1 if the variables match.

@@ -102,12 +102,12 @@ class Plan {
       const double envelope = std::clamp(std::min(t, duration - t) / ramp, 0.0, 1.0);
       return peak * envelope * std::sin(frequency * t);
     };
-    const double left_over = pilot_.vertical_speed();  // removed after the first half cycle
+    const double initial_vertical_speed = pilot_.vertical_speed();  // removed after the first half cycle
     for (std::size_t i = 0; i < steps_of(duration); ++i) {
       const double t = time_step * static_cast<double>(i);
       Command command;
       command.vertical_acceleration = (vertical_speed(t + time_step) - vertical_speed(t)) / time_step;
-      if (t < ramp) command.vertical_acceleration -= left_over / ramp;
+      if (t < ramp) command.vertical_acceleration -= initial_vertical_speed / ramp;
       command.acceleration = -constants::standard_gravity * pilot_.vertical_speed() / pilot_.speed();
       pilot_.step(command, leg);
     }

@@ -50,17 +50,17 @@ std::vector<double> height_differences(const HeightRecord& record, const std::ve
 }
 
 double samples_as_one(const HeightRecord& record, const std::vector<double>& coefficients) {
-  const std::vector<double> left = height_differences(record, coefficients);
-  const double squares = std::inner_product(left.begin(), left.end(), left.begin(), 0.0);
+  const std::vector<double> differences = height_differences(record, coefficients);
+  const double squares = std::inner_product(differences.begin(), differences.end(), differences.begin(), 0.0);
   // To the first lag without correlation: heights about their mean have negative ones beyond.
   double as_one = 1.0;
-  for (std::size_t lag = 1; lag < left.size(); ++lag) {
-    const double products =
-        std::inner_product(left.data() + lag, left.data() + left.size(), left.data(), 0.0);
+  for (std::size_t lag = 1; lag < differences.size(); ++lag) {
+    const double products = std::inner_product(
+        differences.data() + lag, differences.data() + differences.size(), differences.data(), 0.0);
     if (!(products > 0.0)) break;
     as_one += 2.0 * products / squares;
   }
-  return as_one * static_cast<double>(record.samples) / static_cast<double>(left.size());
+  return as_one * static_cast<double>(record.samples) / static_cast<double>(differences.size());
 }
 
 TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms) {

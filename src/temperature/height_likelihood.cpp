@@ -55,7 +55,7 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
   Covariance p = Covariance::Zero();
   Means x = Means::Zero();
   p(wander, wander) = noise.wander * noise.wander;
-  const double slope = prior.slope * record.slope_left;
+  const double slope = prior.slope * record.slope_fraction;
   p(slope_east, slope_east) = p(slope_north, slope_north) = slope * slope;
   const bool has_slopes = slope > 0.0;
   const double walk = noise.walk * noise.walk;
@@ -274,9 +274,9 @@ double HeightEquations::deviance_at(const Eigen::VectorXd& a) const {
   // The other errors are optimised for these coefficients.
   HeightUnknowns all = HeightUnknowns::Zero();
   all.head(a.size()) = a;
-  HeightEquations left = *this;
-  left.right -= information * all;
-  const HeightUnknowns errors = left.best_unknowns(0);
+  HeightEquations conditional = *this;
+  conditional.right -= information * all;
+  const HeightUnknowns errors = conditional.best_unknowns(0);
   all += errors;
   double of_prior = 0.0;
   for (Eigen::Index k = 0; k < height_unknowns; ++k) {
@@ -307,8 +307,8 @@ std::vector<double> height_innovations(const HeightRecord& record, const HeightN
                                        const HeightPrior& prior, const HeightUnknowns& all) {
   std::vector<double> result;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
-    const double left = innovation(0) - innovation.tail<height_unknowns>().dot(all);
-    result.push_back(block.starts_segment ? nan : left / std::sqrt(variance));
+    const double residual = innovation(0) - innovation.tail<height_unknowns>().dot(all);
+    result.push_back(block.starts_segment ? nan : residual / std::sqrt(variance));
   });
   return result;
 }

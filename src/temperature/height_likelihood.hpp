@@ -25,7 +25,7 @@ struct HeightNoise {
 /// Fixed prior information of the fit on a flight.
 struct HeightPrior {
   /// Prior standard deviation of the slope of the isobars, each direction; scaled in a flight by
-  /// `HeightRecord::slope_left`. 0: level.
+  /// `HeightRecord::slope_fraction`. 0: level.
   double slope = 1e-4;
   /// Prior standard deviation of each error, the same in all flights, in the units of `HeightError`; 0
   /// excludes the error. The coefficients of the calibration have no prior: their entries are 0.

@@ -77,8 +77,8 @@ struct HeightRecord {
   std::size_t missing_heights = 0;  ///< samples in the air without GPS height
   std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
   WayKnown way = WayKnown::over_ground;
-  double slope_left = 1.0;  ///< fraction of the usual slope of isobars that `excess` still contains, 0 to 1
-  bool returns = false;     ///< ends within 50 km of its start
+  double slope_fraction = 1.0;   ///< fraction of the usual slope of isobars still in `excess`, 0 to 1
+  bool returns = false;          ///< ends within 50 km of its start
   double min_temperature = 0.0;  ///< degC
   double max_temperature = 0.0;  ///< degC
   /// Rms of the static pressure by one unit of each of its errors, hPa; zero for the coefficients.
@@ -90,7 +90,7 @@ struct HeightRecord {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(name, blocks, segments, samples, height_steps, height_spikes, missing_heights, unknown_ways, way,
-            slope_left, returns, min_temperature, max_temperature, rms_of_unit, law_variance, notes);
+            slope_fraction, returns, min_temperature, max_temperature, rms_of_unit, law_variance, notes);
   }
 };
 

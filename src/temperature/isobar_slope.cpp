@@ -36,7 +36,7 @@ constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
 
 // Estimates use surfaces that are crossed again a few 10 km away, with a scatter of metres: an error of about
 // 3 m in 100 km, a third of the usual slope.
-constexpr double slope_left_by_estimates = 1.0 / 3.0;
+constexpr double slope_fraction_after_estimate = 1.0 / 3.0;
 
 /// Location with a known height of an isobaric surface, and the surface or leg that it belongs to.
 struct Sighting {
@@ -112,7 +112,7 @@ void subtract_isobar_slope(HeightRecord& record, IsobarSlope option) {
         "the slope of isobars is fitted by the likelihood, as with --slope fitted: directions are unknown");
     return;
   }
-  record.slope_left = slope_left_by_estimates;
+  record.slope_fraction = slope_fraction_after_estimate;
   const Eigen::Vector2d slope = estimate_isobar_slope(record, option);
   for (HeightBlock& block : record.blocks) block.excess -= slope[0] * block.east + slope[1] * block.north;
 }

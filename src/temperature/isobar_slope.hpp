@@ -14,8 +14,8 @@ namespace pcor::internal {
 Eigen::Vector2d estimate_isobar_slope(const HeightRecord& record, IsobarSlope option);
 
 /// Subtracts the estimated height change along the track due to isobars that are not level. The remaining
-/// fraction of the usual slope is in `slope_left`, for the likelihood. No change for `none` and `fitted`, or,
-/// with a note, if directions are unknown.
+/// fraction of the usual slope is in `slope_fraction`, for the likelihood. No change for `none` and `fitted`,
+/// or, with a note, if directions are unknown.
 void subtract_isobar_slope(HeightRecord& record, IsobarSlope option);
 
 }  // namespace pcor::internal

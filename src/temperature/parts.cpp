@@ -126,10 +126,11 @@ Disagreement disagreement_of(const std::vector<PartCorrection>& parts) {
   mean /= weights;
   for (const PartCorrection& part : parts)
     result.chi_squared += std::pow((part.correction - part.common - mean) / part.difference_error, 2);
-  const auto freedom = static_cast<double>(parts.size() - 1);
-  result.p_value = chi_squared_tail(result.chi_squared, freedom);
+  const auto degrees_of_freedom = static_cast<double>(parts.size() - 1);
+  result.p_value = chi_squared_tail(result.chi_squared, degrees_of_freedom);
   if (result.p_value < rare)
-    result.spread = std::sqrt((result.chi_squared - freedom) / (weights - squared_weights / weights));
+    result.spread =
+        std::sqrt((result.chi_squared - degrees_of_freedom) / (weights - squared_weights / weights));
   return result;
 }
 

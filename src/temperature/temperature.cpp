@@ -306,15 +306,15 @@ class TemperatureCalibration {
     double weights = 0.0;
     double sum = 0.0;
     for (const HeightRecord& record : records_) {
-      HeightRecord left = without_unknowns(record, unknowns_);
+      HeightRecord remaining = without_unknowns(record, unknowns_);
       const bool one_direction = record.way == WayKnown::length;
-      for (HeightBlock& block : left.blocks) {
+      for (HeightBlock& block : remaining.blocks) {
         block.columns[1] = one_direction ? block.north : block.east;
         block.columns[2] = block.north;
       }
       const std::size_t terms = prior_.slope == 0.0 ? 1 : one_direction ? 2 : 3;
-      const TemperatureFit fit = fit_height_by_least_squares({left}, terms);
-      const double error = fit.standard_errors[0] * std::sqrt(samples_as_one(left, fit.coefficients));
+      const TemperatureFit fit = fit_height_by_least_squares({remaining}, terms);
+      const double error = fit.standard_errors[0] * std::sqrt(samples_as_one(remaining, fit.coefficients));
       if (!std::isfinite(error) || !(error > 0.0) || !std::isfinite(fit.coefficients[0])) continue;
       weights += 1.0 / (error * error);
       sum += fit.coefficients[0] / (error * error);
@@ -393,8 +393,9 @@ class TemperatureCalibration {
     others.head<lasting>().setZero();
     std::vector<double> heights;
     for (const HeightRecord& record : levelled_) {
-      const std::vector<double> own = height_differences(without_unknowns(record, others), coefficients);
-      heights.insert(heights.end(), own.begin(), own.end());
+      const std::vector<double> differences =
+          height_differences(without_unknowns(record, others), coefficients);
+      heights.insert(heights.end(), differences.begin(), differences.end());
     }
     return rms(heights);
   }

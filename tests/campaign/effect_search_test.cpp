@@ -245,9 +245,9 @@ TEST(EffectSearch, RemainingShareIsThatOfTheWholeContribution) {
   const Eigen::Vector2d coefficients(3.0, 0.2);
   const Eigen::VectorXd whole = problem.columns.middleCols(base, 2) * coefficients;
   const Eigen::MatrixXd of_base = problem.columns.leftCols(base);
-  const Eigen::VectorXd left = whole - of_base * of_base.colPivHouseholderQr().solve(whole);
+  const Eigen::VectorXd remaining = whole - of_base * of_base.colPivHouseholderQr().solve(whole);
   EXPECT_GT(search.remaining(0), 0.9) << "the best direction of the group is outside the base";
-  EXPECT_NEAR(search.remaining(0, coefficients), left.squaredNorm() / whole.squaredNorm(),
+  EXPECT_NEAR(search.remaining(0, coefficients), remaining.squaredNorm() / whole.squaredNorm(),
               1e-9);  // rounding of sums of 2000 products
 }
 
@@ -376,7 +376,7 @@ TEST(EffectSearch, EstimatesEqualDenseLeastSquares) {
   const EffectSearch search = problem.search();
   const auto [estimate, covariance] = search.fit({2, 5});
   const Dense dense(problem, {0, 1, base + 2, base + 5});
-  // Rounding of normal equations whose condition, columns alike, is below 1e3.
+  // Rounding of normal equations whose condition, with scaled columns, is below 1e3.
   for (Eigen::Index k = 0; k < 4; ++k) {
     EXPECT_NEAR(estimate[k], dense.estimate[k], 1e-9 * std::abs(dense.estimate[k])) << k;
     const double error = std::sqrt(dense.variance * dense.covariance(k, k));
@@ -509,8 +509,8 @@ TEST(Correlation, SignIsThatOfTheColumns) {
 TEST(Correlation, UsesColumnsWithoutTheirPartInTheBase) {
   Problem problem(1000, 2, 15);
   Eigen::MatrixXd parts = problem.columns.rightCols(2);
-  const Eigen::MatrixXd own = problem.columns.leftCols(2);
-  parts -= own * own.householderQr().solve(parts);
+  const Eigen::MatrixXd of_base = problem.columns.leftCols(2);
+  parts -= of_base * of_base.householderQr().solve(parts);
   const double expected = parts.col(0).dot(parts.col(1)) / parts.col(0).norm() / parts.col(1).norm();
   problem.candidate(0) += 5.0 * problem.columns.col(1);
   problem.candidate(1) += 5.0 * problem.columns.col(1);

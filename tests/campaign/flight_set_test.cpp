@@ -119,16 +119,16 @@ TEST_F(FlightSets, RefuseFlightsOfTwoAircraft) {
   made::Plan plan;
   plan.samples = 60;
   plan.defect = made::equation_18;
-  FlightSamples own = made::flight(plan);
-  FlightSamples other = own;
-  own.aircraft = "N130AR";
-  other.aircraft = "N677F";
+  FlightSamples first = made::flight(plan);
+  FlightSamples second = first;
+  first.aircraft = "N130AR";
+  second.aircraft = "N677F";
   const auto shared = [](const FlightSamples& samples) {
     return std::make_shared<const FlightSamples>(samples);
   };
-  FlightSet({shared(own), shared(own)}).require_one_aircraft();
+  FlightSet({shared(first), shared(first)}).require_one_aircraft();
   EXPECT_THAT(error_of([&] {
-                FlightSet({shared(own), shared(other)}).require_one_aircraft();
+                FlightSet({shared(first), shared(second)}).require_one_aircraft();
               }),
               IsError(Error::Code::usage, "N130AR", "N677F"));
 }

@@ -39,8 +39,8 @@ ModelDefinition curved_model() {
 }
 
 /// The second pair of pressures, with the law of the first.
-std::shared_ptr<const Reference> second_system(const ModelDefinition& own) {
-  ModelDefinition other = own;
+std::shared_ptr<const Reference> second_system(const ModelDefinition& model) {
+  ModelDefinition other = model;
   other.model.name = "second";
   other.variables[Quantity::static_pressure] = "PSFRD";
   other.variables[Quantity::dynamic_pressure] = "QCFR";
@@ -105,11 +105,11 @@ TEST(LinearRows, TwoSystemRowsAreOppositeAtCommonPressures) {
   const LinearRows rows = rows_of(model, *reference);
   EXPECT_TRUE(rows.is_linear());
   const std::vector<double>& start = rows.residuals().parameters();
-  const Eigen::Index own = static_cast<Eigen::Index>(parameter_count(model.model));
+  const Eigen::Index count = static_cast<Eigen::Index>(parameter_count(model.model));
   const Eigen::MatrixXd common = at_used(rows, start, all_parameters(rows));
   const Eigen::MatrixXd recorded = at_used(rows, start, all_parameters(rows), true);
-  EXPECT_EQ(common.leftCols(own), -common.middleCols(own, own));
-  EXPECT_NE(recorded.leftCols(own), -recorded.middleCols(own, own));
+  EXPECT_EQ(common.leftCols(count), -common.middleCols(count, count));
+  EXPECT_NE(recorded.leftCols(count), -recorded.middleCols(count, count));
   EXPECT_EQ(common.rightCols(1), recorded.rightCols(1));
   // The pressures differ by less than a hundredth, and so do the derivatives.
   EXPECT_TRUE(common.isApprox(recorded, 0.01));

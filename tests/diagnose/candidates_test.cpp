@@ -73,9 +73,9 @@ TEST(Candidates, BaseExcludesSurfaceParameters) {
 
 TEST(Candidates, AreTheCatalogueEffectsMissingFromTheModel) {
   const CandidateSet set = candidates_of_file(laser_model());
-  for (const char* own : {"static-constant", "static-alpha", "static-qp"}) {
-    EXPECT_FALSE(has_candidate(set, own));
-    EXPECT_EQ(reason_for(set, own), nullptr);
+  for (const char* id : {"static-constant", "static-alpha", "static-qp"}) {
+    EXPECT_FALSE(has_candidate(set, id));
+    EXPECT_EQ(reason_for(set, id), nullptr);
   }
   std::size_t effects = 0;
   for (const Candidate& candidate : set.candidates) effects += candidate.is_variant ? 0 : 1;

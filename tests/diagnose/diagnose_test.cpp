@@ -237,13 +237,13 @@ TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
   EXPECT_THAT(diagnosis.verdict, AnyOf(Verdict::unexplained, Verdict::partial));
   ASSERT_TRUE(diagnosis.unexplained.significant);
   ASSERT_FALSE(diagnosis.unexplained.variables.empty());
-  const pcor::EmpiricalPredictor& traced = diagnosis.unexplained.variables[0];
-  EXPECT_EQ(traced.name, "ENGTRQ");
-  EXPECT_EQ(traced.unit, "percent");
-  EXPECT_THAT(traced.formula, HasSubstr("ENGTRQ"));
+  const pcor::EmpiricalPredictor& predictor = diagnosis.unexplained.variables[0];
+  EXPECT_EQ(predictor.name, "ENGTRQ");
+  EXPECT_EQ(predictor.unit, "percent");
+  EXPECT_THAT(predictor.formula, HasSubstr("ENGTRQ"));
   // 3 hPa for 100 percent; slow drift in the noise and a memory of the torque take some.
-  EXPECT_GT(traced.slope, 0.01);
-  EXPECT_LT(traced.slope, 0.04);
+  EXPECT_GT(predictor.slope, 0.01);
+  EXPECT_LT(predictor.slope, 0.04);
   ASSERT_THAT(diagnosis.flights, SizeIs(1));
   EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
   // The line of the model that lets the effect of the torque be tested.
@@ -449,14 +449,14 @@ TEST(Diagnose, TotalPressuresLocateTracedVariable) {
         pcor::diagnose({simulated_flight("c130-eq18", 343, torque)}, laser_model(), laser_and_total());
     ASSERT_FALSE(diagnosis.unexplained.variables.empty()) << total;
     // The laser alone shows an error in the total line as a drift that varies with more than one variable.
-    const pcor::EmpiricalPredictor& traced = diagnosis.unexplained.variables.front();
+    const pcor::EmpiricalPredictor& predictor = diagnosis.unexplained.variables.front();
     if (!total) {
-      EXPECT_EQ(traced.name, "ENGTRQ");
+      EXPECT_EQ(predictor.name, "ENGTRQ");
     }
-    EXPECT_EQ(traced.location, total ? pcor::EffectLocation::pitot : pcor::EffectLocation::static_defect);
-    EXPECT_EQ(traced.components.front(), total ? "pitot" : "port");
-    EXPECT_EQ(std::count(traced.components.begin(), traced.components.end(), "laser"), total ? 0 : 1);
-    EXPECT_THAT(component_text(traced), HasSubstr(total ? "also vary with" : "do not vary with"));
+    EXPECT_EQ(predictor.location, total ? pcor::EffectLocation::pitot : pcor::EffectLocation::static_defect);
+    EXPECT_EQ(predictor.components.front(), total ? "pitot" : "port");
+    EXPECT_EQ(std::count(predictor.components.begin(), predictor.components.end(), "laser"), total ? 0 : 1);
+    EXPECT_THAT(component_text(predictor), HasSubstr(total ? "also vary with" : "do not vary with"));
   }
 }
 

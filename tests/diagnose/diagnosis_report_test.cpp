@@ -66,9 +66,9 @@ FlightDiagnosis diagnosed_flight(const std::string& name, unsigned seed) {
     made.sideslip.push_back(sideslip);
     made.traced.push_back(torque);
     made.drift.push_back(0.03 * std::sin(t / 900.0));
-    const double left = 0.003 * (torque - 60.0) + made.drift.back() + noise;
-    made.before.push_back(used ? left + first + second : nan);
-    made.after.push_back(used ? left : nan);
+    const double residual = 0.003 * (torque - 60.0) + made.drift.back() + noise;
+    made.before.push_back(used ? residual + first + second : nan);
+    made.after.push_back(used ? residual : nan);
     made.added[0].push_back(first);
     made.added[1].push_back(second);
     made.evidence[0].push_back(used ? (yaw ? 40.0 : 0.3 * normal(engine)) : nan);

@@ -15,13 +15,13 @@ using testing::Not;
 TEST(UnexplainedText, StatesTheLocationsOfTheResult) {
   Unexplained unexplained;
   unexplained.significant = true;
-  EmpiricalPredictor& traced = unexplained.variables.emplace_back();
-  traced.name = "ENGTRQ";
-  traced.formula = "k * (ENGTRQ - 60)";
+  EmpiricalPredictor& predictor = unexplained.variables.emplace_back();
+  predictor.name = "ENGTRQ";
+  predictor.formula = "k * (ENGTRQ - 60)";
   EXPECT_THAT(unexplained_text(unexplained).at(1), AllOf(HasSubstr("location of the error is unknown"),
                                                          HasSubstr("added to the static pressure")));
-  traced.components = {"pitot", "q-transducer"};
-  traced.location = EffectLocation::pitot;
+  predictor.components = {"pitot", "q-transducer"};
+  predictor.location = EffectLocation::pitot;
   EXPECT_THAT(unexplained_text(unexplained).at(1),
               AllOf(HasSubstr("one of: pitot, q-transducer"), HasSubstr("added to the total pressure"),
                     Not(HasSubstr("is unknown")), Not(HasSubstr("static pressure"))));

@@ -92,8 +92,8 @@ std::string beside_json(const Diagnosis& diagnosis) {
       held.insert(held.end(), alias.fixed.begin(), alias.fixed.end());
     }
   }
-  for (const CoefficientEstimate& own : diagnosis.own)
-    numbers.insert(numbers.end(), {own.value, own.standard_error});
+  for (const CoefficientEstimate& estimate : diagnosis.own)
+    numbers.insert(numbers.end(), {estimate.value, estimate.standard_error});
   return serialized(numbers) + serialized(held) + serialized(diagnosis.flights);
 }
 

@@ -25,7 +25,7 @@ using testing::Not;
 
 enum : Eigen::Index { base, effect, rival, columns };
 
-/// Rows in which the columns of effect and rival are alike to a correlation.
+/// Rows in which the columns of effect and rival have a given correlation.
 Eigen::MatrixXd rows_of(Eigen::Index count, double correlation, unsigned seed = 1) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> normal;
@@ -45,8 +45,8 @@ SeparationProblem rivalry_of(const Eigen::MatrixXd& rows, double size) {
 }
 
 /// The sum of squares that a fit of some columns leaves.
-double left_by(const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& fitted,
-               const Eigen::VectorXd& residual) {
+double residual_squares(const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& fitted,
+                        const Eigen::VectorXd& residual) {
   const Eigen::MatrixXd some = rows(Eigen::all, fitted);
   const Eigen::VectorXd estimate = (some.transpose() * some).ldlt().solve(some.transpose() * residual);
   return (residual - some * estimate).squaredNorm();
@@ -71,7 +71,9 @@ TEST(Separation, PredictedProbabilityEqualsSimulatedFrequency) {
       const Eigen::VectorXd residual =
           size * all.col(effect) +
           Eigen::VectorXd::NullaryExpr(all.rows(), [&](Eigen::Index) { return normal(engine); });
-      if (left_by(all, {base, rival}, residual) - left_by(all, {base, effect}, residual) > 9.0) ++separated;
+      if (residual_squares(all, {base, rival}, residual) - residual_squares(all, {base, effect}, residual) >
+          9.0)
+        ++separated;
     }
     EXPECT_NEAR(plan.power, static_cast<double>(separated) / draws, 0.03) << size;
   }
@@ -133,8 +135,9 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
   const ModelEffect lag = neutral_effect("static-lag");
   const std::string manoeuvre(effect_named("static-lag")->manoeuvre);
   const SeparationProblem rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
-  const std::vector<RegimeStatistics> alike{regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
-  for (const std::vector<RegimeStatistics>& regimes : {alike, std::vector<RegimeStatistics>{}}) {
+  const std::vector<RegimeStatistics> indistinguishable{
+      regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
+  for (const std::vector<RegimeStatistics>& regimes : {indistinguishable, std::vector<RegimeStatistics>{}}) {
     const Plan plan = best_plan(regimes, rivalry);
     EXPECT_EQ(plan.regime, nullptr);
     EXPECT_EQ(plan.power, 0.0);
@@ -145,10 +148,10 @@ TEST(Separation, CatalogueAdvisesIfNoRegimeHelps) {
     EXPECT_THAT(text, HasSubstr(manoeuvre));
     EXPECT_THAT(text, Not(HasSubstr("%")));
   }
-  ModelEffect own;
-  own.id = "my-thrust";
-  own.formula = "k * ENGTRQ";
-  EXPECT_THAT(general_advice("my-thrust", own), testing::IsEmpty());
+  ModelEffect user_effect;
+  user_effect.id = "my-thrust";
+  user_effect.formula = "k * ENGTRQ";
+  EXPECT_THAT(general_advice("my-thrust", user_effect), testing::IsEmpty());
 }
 
 // More of the same regimes is not advised if the flights already nearly separate the effect.

@@ -55,7 +55,7 @@ Eigen::MatrixXd with_constant(const Eigen::MatrixXd& rows) {
 }
 
 /// The part of a target that columns leave, 0 to 1.
-double left_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+double relative_residual(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
   return (target - columns * columns.colPivHouseholderQr().solve(target)).norm() / target.norm();
 }
 
@@ -130,7 +130,7 @@ TEST(Smooth, BasisHasALineAndNoConstant) {
     // A constant adds a separate direction.
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(with);
     EXPECT_EQ(decomposition.rank(), rows.cols() + 1);
-    EXPECT_LT(left_of(with, as_vector(values)), 1e-10);
+    EXPECT_LT(relative_residual(with, as_vector(values)), 1e-10);
   }
 }
 
@@ -147,7 +147,7 @@ TEST(Smooth, FollowsABentCurve) {
   for (Eigen::Index i = 0; i < 600; ++i) wave[i] = std::sin(values[static_cast<std::size_t>(i)]);
   const Eigen::MatrixXd rows = functions_of(Smooth::with_knots_at_values(known(values), 6), values);
   // Quadratic splines of knots h = 1.2 apart err by h^3/72 of the third derivative, some percent.
-  EXPECT_LT(left_of(with_constant(rows), wave), 0.05);
+  EXPECT_LT(relative_residual(with_constant(rows), wave), 0.05);
 }
 
 // For a switch with three positions every function is one column set: equal to a mean for each, less the
@@ -160,7 +160,7 @@ TEST(Smooth, FewLevelsAllowAnyFunctionOfThem) {
   const Eigen::MatrixXd rows = functions_of(smooth, values);
   Eigen::VectorXd target(90);
   for (Eigen::Index i = 0; i < 90; ++i) target[i] = i % 3 == 1 ? 5.0 : (i % 3 == 2 ? -1.0 : 0.5);
-  EXPECT_LT(left_of(with_constant(rows), target), 1e-10);
+  EXPECT_LT(relative_residual(with_constant(rows), target), 1e-10);
 }
 
 TEST(VariableValues, QuantilesEqualThoseOfOneListForEachPartition) {
@@ -174,11 +174,11 @@ TEST(VariableValues, QuantilesEqualThoseOfOneListForEachPartition) {
     pcor::test::run_with_communicator(size, [&](pcor::Communicator& comm) {
       const FlightPartition partition(comm, {3, 2, 1});
       const VariableValues known(partition, [&values](std::size_t flight) {
-        std::vector<double> own;  // the last flight has no values
+        std::vector<double> result;  // the last flight has no values
         for (std::size_t i = 0; i < values.size(); ++i) {
-          if (i * i % 2 == flight) own.push_back(values[i]);
+          if (i * i % 2 == flight) result.push_back(values[i]);
         }
-        return own;
+        return result;
       });
       const std::vector<double> found = known.quantiles(5);
       ASSERT_EQ(found.size(), 5U);
@@ -196,7 +196,7 @@ TEST(Smooth, ManyEqualValuesGiveFiniteColumns) {
   EXPECT_LE(smooth.columns(), 6U);
   const Eigen::MatrixXd rows = functions_of(smooth, values);
   EXPECT_TRUE(rows.allFinite());
-  EXPECT_LT(left_of(rows, rows.col(0)), 1e-10);
+  EXPECT_LT(relative_residual(rows, rows.col(0)), 1e-10);
 }
 
 TEST(Smooth, MissingValuesAreIgnored) {
@@ -227,15 +227,15 @@ TEST(Smooth, EvenKnotsFollowAWaveInSparseValues) {
   Eigen::VectorXd wave(static_cast<Eigen::Index>(values.size()));
   for (std::size_t i = 0; i < values.size(); ++i)
     wave[static_cast<Eigen::Index>(i)] = std::sin(2.0 * std::acos(-1.0) * values[i]);
-  const auto left = [&](const Smooth& smooth) {
+  const auto residual_of_wave = [&](const Smooth& smooth) {
     const Eigen::MatrixXd rows = functions_of(smooth, values);
     const Eigen::MatrixXd with = with_constant(rows);
     EXPECT_EQ(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(with).rank(), with.cols());
-    return left_of(with, wave);
+    return relative_residual(with, wave);
   };
   // Knots 0.26 of a period apart: splines err by h^3/72 of the third derivative, 6 % of the wave's amplitude.
-  EXPECT_LT(left(Smooth::with_even_knots(known(values), 24)), 0.06);
-  EXPECT_GT(left(Smooth::with_knots_at_values(known(values), 6)), 0.5);
+  EXPECT_LT(residual_of_wave(Smooth::with_even_knots(known(values), 24)), 0.06);
+  EXPECT_GT(residual_of_wave(Smooth::with_knots_at_values(known(values), 6)), 0.5);
 }
 
 TEST(Smooth, AngleResultIsIndependentOfOrigin) {

@@ -293,9 +293,9 @@ TEST(GpsFit, StatedErrorContainsTheDisagreementOfFlights) {
     return pcor::refit({simulated("c130-eight-circles"), simulated("c130-eight-circles", effect)}, model,
                        pcor::read_references({"wind"}, model, {}).used, {});
   };
-  const RefitResult alike = fit_beside_a_flight_with("0.0");
+  const RefitResult equal = fit_beside_a_flight_with("0.0");
   const RefitResult different = fit_beside_a_flight_with("0.003");
-  EXPECT_GT(stated_by(different), 2.0 * stated_by(alike));
+  EXPECT_GT(stated_by(different), 2.0 * stated_by(equal));
   EXPECT_THAT(different.warnings, Contains(HasSubstr("disagree")));
-  EXPECT_THAT(alike.warnings, Not(Contains(HasSubstr("disagree"))));
+  EXPECT_THAT(equal.warnings, Not(Contains(HasSubstr("disagree"))));
 }

@@ -75,19 +75,19 @@ TEST_P(IntervalOffsetsOfLeastSquares, EqualTheSolutionForAllUnknowns) {
   const auto systems = stage_->of_each([&](std::size_t flight, const FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
     const std::vector<double>& pressure = *samples.model.find(Quantity::static_pressure);
-    Eigen::MatrixXd own = stage_->weighted(flight, stage_->columns(flight));
+    Eigen::MatrixXd system = stage_->weighted(flight, stage_->columns(flight));
     for (std::size_t k = 0; k < 4; ++k) {
       const Interval& interval = samples.intervals[k];
       std::vector<double> shift(samples.time.size(), 0.0);
       for (std::size_t i = 0; i < shift.size(); ++i) {
         if (samples.time[i] >= interval.begin && samples.time[i] < interval.end) shift[i] = pressure[i];
       }
-      own.conservativeResize(Eigen::NoChange, own.cols() + 1);
-      own.rightCols(1) = stage_->weighted(flight, stage_->bins(flight).means(shift));
+      system.conservativeResize(Eigen::NoChange, system.cols() + 1);
+      system.rightCols(1) = stage_->weighted(flight, stage_->bins(flight).means(shift));
     }
-    own.conservativeResize(Eigen::NoChange, own.cols() + 1);
-    own.rightCols(1) = stage_->weighted(flight, stage_->residual(flight, task_.start));
-    return own;
+    system.conservativeResize(Eigen::NoChange, system.cols() + 1);
+    system.rightCols(1) = stage_->weighted(flight, stage_->residual(flight, task_.start));
+    return system;
   });
   Eigen::Index bins = 0;
   for (const Eigen::MatrixXd& system : systems) bins += system.rows();

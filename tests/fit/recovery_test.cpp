@@ -142,13 +142,13 @@ TEST(RecoveryStudy, EffectsBeforeTheLaserGiveNoFalseFinding) {
       pcor::ModelDefinition with = model;
       with.model.effects.push_back(pcor::neutral_effect(id));
       const pcor::RefitResult fit = pcor::refit({directory / "flight.nc"}, with, {pcor::lams_reference()});
-      const pcor::FittedParameter& own = fit.parameters.back();
-      if (own.value < 0.0) ++count;
-      if (own.at_bound) ++at_bound[id];
+      const pcor::FittedParameter& added = fit.parameters.back();
+      if (added.value < 0.0) ++count;
+      if (added.at_bound) ++at_bound[id];
       for (const pcor::FittedParameter& p : fit.parameters) {
         // One of 64 scores is beyond four with a probability of 1 in 250. With a coefficient at its bound
         // the errors do not cover all coefficients.
-        const double score = own.at_bound ? 0.0 : std::abs(p.value - p.start) / p.standard_error;
+        const double score = added.at_bound ? 0.0 : std::abs(p.value - p.start) / p.standard_error;
         EXPECT_LT(score, 4.0) << p.name << " seed " << seed;
       }
     }

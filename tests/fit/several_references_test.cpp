@@ -75,10 +75,11 @@ TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
   pcor::RefitOptions options;
   options.alike = {"total-lag"};
   const References references = pcor::read_references({"lams", "total:PSFRD+QCFR"}, model, {}).used;
-  const FittedParameter alike =
+  const FittedParameter shared =
       parameter(pcor::refit({flight_file()}, model, references, options), "total-lag.tau");
-  EXPECT_NEAR(alike.value, alone.value, 1e-9) << "the total pressures see no other coefficient of this model";
-  EXPECT_NEAR(alike.standard_error, alone.standard_error, 1e-9);
+  EXPECT_NEAR(shared.value, alone.value, 1e-9)
+      << "the total pressures see no other coefficient of this model";
+  EXPECT_NEAR(shared.standard_error, alone.standard_error, 1e-9);
   const FittedParameter of_one =
       parameter(fit_of_short_flight(model, {"lams", "total:PSFRD+QCFR"}), "total-lag.tau");
   EXPECT_LT(of_one.standard_error, alone.standard_error) << "a lag of one system is seen there";

@@ -20,7 +20,7 @@ const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "dat
 
 struct Pair {
   std::filesystem::path scenario;
-  pcor::ModelDefinition own;
+  pcor::ModelDefinition primary;
   pcor::ModelDefinition other;
 };
 
@@ -33,32 +33,32 @@ Pair gv() {
   Pair pair{data / "scenarios" / "gv-eq20.toml",
             pcor::read_model(data / "scenarios" / "models" / "gv-psf-eq20.toml"),
             {}};
-  pair.other = pair.own;
+  pair.other = pair.primary;
   pair.other.model.name = "second pair of the GV";
   pair.other.variables[pcor::Quantity::static_pressure] = "PSFR";
   pair.other.variables[pcor::Quantity::dynamic_pressure] = "QCFR";
   return pair;
 }
 
-/// Change of the corrected static pressure of the own system by a fit, and its stated error, rms over a
+/// Change of the corrected static pressure of the primary system by a fit, and its stated error, rms over a
 /// flight, hPa.
 struct Change {
-  double own = 0.0;
-  double own_error = 0.0;
+  double value = 0.0;
+  double error = 0.0;
 };
 
 Change change_of(const pcor::RefitResult& fit, const Pair& pair, const std::filesystem::path& flight) {
   const auto reference = pcor::static_system_reference(pair.other);
   const auto samples = std::make_shared<const pcor::FlightSamples>(
-      pcor::read_samples(pcor::Flight(flight), pair.own, *reference));
-  const pcor::Residuals residuals(samples, pair.own, *reference);
+      pcor::read_samples(pcor::Flight(flight), pair.primary, *reference));
+  const pcor::Residuals residuals(samples, pair.primary, *reference);
   std::vector<double> start;
   std::vector<double> after;
-  std::vector<std::size_t> own;
+  std::vector<std::size_t> indices;
   for (std::size_t p = 0; p < fit.parameters.size(); ++p) {
     start.push_back(fit.parameters[p].start);
     after.push_back(fit.parameters[p].value);
-    if (fit.parameters[p].name.rfind("reference:", 0) != 0) own.push_back(p);
+    if (fit.parameters[p].name.rfind("reference:", 0) != 0) indices.push_back(p);
   }
   const auto defect = [&](const std::vector<double>& parameters) {
     return residuals.quantity(pcor::Quantity::static_defect, parameters.data());
@@ -69,27 +69,27 @@ Change change_of(const pcor::RefitResult& fit, const Pair& pair, const std::file
   double count = 0.0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (residuals.mask()[i] != pcor::Mask::none) continue;
-    std::vector<double> derivatives(own.size());
+    std::vector<double> derivatives(indices.size());
     double residual = 0.0;
-    residuals.evaluate({i}, start.data(), own, &residual, derivatives.data());
+    residuals.evaluate({i}, start.data(), indices, &residual, derivatives.data());
     double variance = 0.0;
-    for (std::size_t a = 0; a < own.size(); ++a) {
-      for (std::size_t b = 0; b < own.size(); ++b)
+    for (std::size_t a = 0; a < indices.size(); ++a) {
+      for (std::size_t b = 0; b < indices.size(); ++b)
         variance += derivatives[a] * derivatives[b] * fit.covariance[a][b];
     }
-    change.own += std::pow(now[i] - before[i], 2);
-    change.own_error += variance;
+    change.value += std::pow(now[i] - before[i], 2);
+    change.error += variance;
     count += 1.0;
   }
-  change.own = std::sqrt(change.own / count);
-  change.own_error = std::sqrt(change.own_error / count);
+  change.value = std::sqrt(change.value / count);
+  change.error = std::sqrt(change.error / count);
   return change;
 }
 
 pcor::RefitResult fit_both(const Pair& pair, const std::filesystem::path& flight) {
   pcor::RefitOptions options;
   options.fit_reference = true;
-  return pcor::refit({flight}, pair.own, {pcor::static_system_reference(pair.other)}, options);
+  return pcor::refit({flight}, pair.primary, {pcor::static_system_reference(pair.other)}, options);
 }
 
 }  // namespace
@@ -111,10 +111,10 @@ TEST(TwoSystems, StartAtTheTruthStaysAtTheTruth) {
       pcor::simulate_flight(scenario, directory / "flight.nc");
       const pcor::RefitResult fit = fit_both(pair, directory / "flight.nc");
       const Change change = change_of(fit, pair, directory / "flight.nc");
-      EXPECT_LT(change.own, 0.05) << pair.own.model.name << " seed " << seed;
-      EXPECT_LT(change.own, 2.0 * change.own_error) << pair.own.model.name << " seed " << seed;
+      EXPECT_LT(change.value, 0.05) << pair.primary.model.name << " seed " << seed;
+      EXPECT_LT(change.value, 2.0 * change.error) << pair.primary.model.name << " seed " << seed;
       // The common part keeps its prior error: tenths of a hPa by the typical sizes.
-      EXPECT_GT(change.own_error, 0.3) << pair.own.model.name << " seed " << seed;
+      EXPECT_GT(change.error, 0.3) << pair.primary.model.name << " seed " << seed;
     }
   }
 }
@@ -137,7 +137,7 @@ TEST(TwoSystems, CommonPartKeepsPriorError) {
 // difference is determined.
 TEST(TwoSystems, FormulasKeepTheirValuesAsPriorErrors) {
   Pair pair = c130();
-  for (auto* const system : {&pair.own, &pair.other}) {
+  for (auto* const system : {&pair.primary, &pair.other}) {
     pcor::ModelEffect law{"trailing-cone"};
     law.formula = "c0 + c1 * dynamic_pressure";
     law.parameter_names = {"c0", "c1"};
@@ -153,31 +153,31 @@ TEST(TwoSystems, FormulasKeepTheirValuesAsPriorErrors) {
     // The mean of two constants with this prior error; the difference adds a tenth.
     EXPECT_NEAR(fit.parameters[constant].standard_error, 3.0 / std::sqrt(2.0), 0.3);
   }
-  pair.own.model.effects[0].parameters[0] = 0.0;
+  pair.primary.model.effects[0].parameters[0] = 0.0;
   EXPECT_THROW(fit_both(pair, pcor::test::simulated("c130-eq18")), pcor::Error);
 }
 
 TEST(TwoSystems, WrongDifferenceCorrectsDifferenceOnly) {
   Pair pair = c130();
   constexpr double off = 0.0005;  // relative to the pressure: 0.3 to 0.5 hPa
-  pair.own.model.effects[0].parameters[0] += off;
+  pair.primary.model.effects[0].parameters[0] += off;
   pair.other.model.effects[0].parameters[0] -= off;
   const pcor::RefitResult fit = fit_both(pair, pcor::test::simulated("c130-eq18"));
-  const double own = fit.parameters[0].value - fit.parameters[0].start;
+  const double primary = fit.parameters[0].value - fit.parameters[0].start;
   const double other = fit.parameters[3].value - fit.parameters[3].start;
   ASSERT_EQ(fit.parameters[3].name, "reference:static-constant.a0");
   // The fit recovers the difference within the noise and the typical sizes of the other terms.
-  EXPECT_NEAR(own - other, -2.0 * off, 0.1 * off);
-  EXPECT_NEAR(own + other, 0.0, 0.1 * off);
+  EXPECT_NEAR(primary - other, -2.0 * off, 0.1 * off);
+  EXPECT_NEAR(primary + other, 0.0, 0.1 * off);
 }
 
 TEST(TwoSystems, FileCovarianceIsUsedAsPrior) {
   Pair pair = c130();
-  // The own system is known to 1e-5 of the pressure; the other is off by half a hPa, and takes all of it.
-  for (std::size_t e = 0; e < pair.own.model.effects.size(); ++e) {
-    pair.own.fits.resize(pair.own.model.effects.size());
-    pair.own.fits[e].resize(1);
-    pair.own.fits[e][0].standard_error = 1e-5;
+  // The primary system is known to 1e-5 of the pressure; the other is off by half a hPa, and takes all of it.
+  for (std::size_t e = 0; e < pair.primary.model.effects.size(); ++e) {
+    pair.primary.fits.resize(pair.primary.model.effects.size());
+    pair.primary.fits[e].resize(1);
+    pair.primary.fits[e][0].standard_error = 1e-5;
   }
   constexpr double off = 0.0005;
   pair.other.model.effects[0].parameters[0] += off;

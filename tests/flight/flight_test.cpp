@@ -115,9 +115,9 @@ TEST_F(FlightTest, RefusesTruncatedFilesOfEachFormat) {
       }
       EXPECT_EQ(Flight(path()).records(), 500);
       const auto size = std::filesystem::file_size(path());
-      for (const std::uintmax_t left : {size - 1, size / 2, std::uintmax_t{40}}) {
-        std::filesystem::resize_file(path(), left);
-        EXPECT_THAT(refusal(), IsError(Error::Code::file)) << mode << " " << left << " of " << size;
+      for (const std::uintmax_t remaining : {size - 1, size / 2, std::uintmax_t{40}}) {
+        std::filesystem::resize_file(path(), remaining);
+        EXPECT_THAT(refusal(), IsError(Error::Code::file)) << mode << " " << remaining << " of " << size;
       }
     }
   }

@@ -48,7 +48,7 @@ constexpr Kind closing{"close", EIO};
 constexpr Kind stopping{"stop", 0};
 
 const char* failing_kind = nullptr;  // null before main
-std::atomic<long> calls_left{0};
+std::atomic<long> remaining_calls{0};
 
 void report(const char* call) {
   const auto file = static_cast<int>(
@@ -59,7 +59,8 @@ void report(const char* call) {
 
 /// True if this call must fail; sets errno.
 bool fails(const Kind& kind, const char* call) {
-  if (failing_kind == nullptr || std::strcmp(kind.name, failing_kind) != 0 || --calls_left != 0) return false;
+  if (failing_kind == nullptr || std::strcmp(kind.name, failing_kind) != 0 || --remaining_calls != 0)
+    return false;
   report(call);
   errno = kind.reason;
   return true;
@@ -75,7 +76,7 @@ using Main = int(int, char**, char**);
 Main* program = nullptr;
 
 int count_from_here(int argc, char** argv, char** environment) {
-  if (const char* const number = std::getenv("FAILING_NUMBER")) calls_left = std::atol(number);
+  if (const char* const number = std::getenv("FAILING_NUMBER")) remaining_calls = std::atol(number);
   failing_kind = std::getenv("FAILING_CALL");
   return program(argc, argv, environment);
 }

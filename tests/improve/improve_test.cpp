@@ -84,7 +84,7 @@ class Improve : public testing::Test {
     }
     const double rms = square_sum_of(noise).rms();
     for (double& value : noise) value /= rms;
-    for (const auto& [model, alike] : models) {
+    for (const auto& [model, shared_effects] : models) {
       for (double& value : flight.residuals.emplace_back(noise))
         value *= model.law.rms_hpa.value_or(given_rms_);
       double change = 0.0;
@@ -127,15 +127,15 @@ Diagnosis diagnosis(Verdict verdict, const std::vector<std::string>& findings = 
   return result;
 }
 
-Diagnosis with_trace(Diagnosis result, const std::string& variable) {
-  EmpiricalPredictor traced;
-  traced.name = variable;
-  traced.slope = -0.03;
-  traced.formula = "k * (" + variable + " - 48)";
+Diagnosis with_predictor(Diagnosis result, const std::string& variable) {
+  EmpiricalPredictor predictor;
+  predictor.name = variable;
+  predictor.slope = -0.03;
+  predictor.formula = "k * (" + variable + " - 48)";
   result.unexplained.significant = true;
   result.unexplained.rms = 0.4;
   result.unexplained.regime = "climb";
-  result.unexplained.variables.push_back(traced);
+  result.unexplained.variables.push_back(predictor);
   return result;
 }
 
@@ -485,7 +485,7 @@ TEST_F(Improve, PartialFindingIsNotNamedAsCause) {
 }
 
 TEST_F(Improve, TracesIfAPartialFindingDoesNotReduceTheResidual) {
-  EXPECT_THAT(added(run({with_trace(diagnosis(Verdict::partial, {"static-lag"}), "ENGTRQ"),
+  EXPECT_THAT(added(run({with_predictor(diagnosis(Verdict::partial, {"static-lag"}), "ENGTRQ"),
                          diagnosis(Verdict::none_detected)},
                         {1.0, 0.995, 0.6})),
               ElementsAre("", "traced-engtrq"));
@@ -493,7 +493,7 @@ TEST_F(Improve, TracesIfAPartialFindingDoesNotReduceTheResidual) {
 
 TEST_F(Improve, AddsAFormulaOfATracedVariable) {
   const Improvement improvement =
-      run({with_trace(diagnosis(Verdict::unexplained), "ENG_Trq2"), diagnosis(Verdict::none_detected)},
+      run({with_predictor(diagnosis(Verdict::unexplained), "ENG_Trq2"), diagnosis(Verdict::none_detected)},
           {1.0, 0.9});
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-eng-trq2"));
   const ModelEffect& effect = improvement.model.model.effects.back();
@@ -505,13 +505,14 @@ TEST_F(Improve, AddsAFormulaOfATracedVariable) {
 }
 
 TEST_F(Improve, ATracedVariableMustReduceTheResidual) {
-  const Improvement improvement = run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.991});
+  const Improvement improvement =
+      run({with_predictor(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.991});
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(improvement.stop_explanation, HasSubstr("traced-engtrq"));
 }
 
 TEST_F(Improve, AdvisesTheRoleOfATracedVariableAfterARejection) {
-  Diagnosis unnamed = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
+  Diagnosis unnamed = with_predictor(diagnosis(Verdict::unexplained), "ENGTRQ");
   unnamed.unnamed_roles = {{"engine_torque", "ENGTRQ", "speedbrake-thrust"}};
   const Improvement improvement = run({unnamed}, {1.0, 0.991});
   EXPECT_EQ(improvement.stop_reason, StopReason::no_gain);
@@ -520,7 +521,7 @@ TEST_F(Improve, AdvisesTheRoleOfATracedVariableAfterARejection) {
 
 TEST_F(Improve, NeverAddsAnEffectTwice) {
   const Improvement improvement =
-      run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.9, 0.8, 0.7});
+      run({with_predictor(diagnosis(Verdict::unexplained), "ENGTRQ")}, {1.0, 0.9, 0.8, 0.7});
   EXPECT_THAT(added(improvement), ElementsAre("", "traced-engtrq"));
   EXPECT_THAT(improvement.stop_explanation, HasSubstr("ENGTRQ"));
   EXPECT_EQ(run({diagnosis(Verdict::identified, {"static-qp"})}).stop_reason, StopReason::in_model);
@@ -528,14 +529,14 @@ TEST_F(Improve, NeverAddsAnEffectTwice) {
 
 TEST_F(Improve, TracesOnlyOnRequest) {
   loop_.trace_variables = false;
-  const Improvement improvement = run({with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")});
+  const Improvement improvement = run({with_predictor(diagnosis(Verdict::unexplained), "ENGTRQ")});
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_EQ(improvement.stop_reason, StopReason::unexplained);
   EXPECT_THAT(improvement.stop_explanation, AllOf(HasSubstr("climb"), HasSubstr("ENGTRQ")));
 }
 
 TEST_F(Improve, ReportsAResidualThatNoVariableExplains) {
-  Diagnosis unexplained = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
+  Diagnosis unexplained = with_predictor(diagnosis(Verdict::unexplained), "ENGTRQ");
   unexplained.unexplained.variables.clear();
   const Improvement improvement = run({unexplained});
   EXPECT_EQ(improvement.stop_reason, StopReason::unexplained);

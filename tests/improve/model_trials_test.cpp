@@ -117,13 +117,13 @@ TEST(Trials, CommonErrorsCancelInTotalPressureDifference) {
   const ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
   const References total{
       total_pressure_reference(read_model(data_directory / "models" / "c130-psfrd-eq18.toml"))};
-  const ModelDefinition own = add_effects(law(), {loss});
-  const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss.id}}}, total);
+  const ModelDefinition with_loss = add_effects(law(), {loss});
+  const std::vector<TrialFlight> flights = tried({{law()}, {with_loss}, {with_loss, {loss.id}}}, total);
   const TrialFlight& only = flights.front();
   const double alone = rms_between(only.residuals[0], only.residuals[1], only.fitted);
-  const double alike = rms_between(only.residuals[0], only.residuals[2], only.fitted);
+  const double shared = rms_between(only.residuals[0], only.residuals[2], only.fitted);
   EXPECT_GT(alone, 0.1);
-  EXPECT_EQ(alike, 0.0);
+  EXPECT_EQ(shared, 0.0);
 }
 
 }  // namespace

@@ -28,11 +28,11 @@ using test::data_directory;
 /// The law on the variables of the flight: those that only other aircraft have get their like, and the laser
 /// and its angle of attack join.
 ModelDefinition read_law(const std::filesystem::path& path) {
-  const std::map<std::string, std::string> alike{
+  const std::map<std::string, std::string> equivalent{
       {"PSF", "PSFD"}, {"PSTF", "PSFRD"}, {"QCTF", "QCFR"}, {"TTHR1", "TTRR"}, {"RTH1", "RTF1"}};
   ModelDefinition file = read_model(path);
   for (auto& [role, variable] : file.variables) {
-    if (const auto found = alike.find(variable); found != alike.end()) variable = found->second;
+    if (const auto found = equivalent.find(variable); found != equivalent.end()) variable = found->second;
   }
   file.variables.emplace(Quantity::attack, "ATTACK");
   file.variables.emplace(Quantity::lams_airspeed, "VLAMS");

@@ -403,7 +403,7 @@ std::string tree_text(const Tree& tree, int binding, std::mt19937& random) {
            std::string(random() % 2, ' ');
   };
   std::string text;
-  int own = 5;
+  int precedence = 5;
   switch (tree.kind) {
     case Tree::number: {
       char digits[40];
@@ -415,30 +415,30 @@ std::string tree_text(const Tree& tree, int binding, std::mt19937& random) {
       text = tree_names[tree.which];
       break;
     case Tree::minus:
-      own = 3;
+      precedence = 3;
       text = "-" + part(0, 3);
       break;
     case Tree::plus:
-      own = 1;
+      precedence = 1;
       text = part(0, 1) + "+" + part(1, 2);
       break;
     case Tree::difference:
-      own = 1;
+      precedence = 1;
       text = part(0, 1) + "-" + part(1, 2);
       break;
     case Tree::product:
-      own = 2;
+      precedence = 2;
       text = part(0, 2) + "*" + part(1, 3);
       break;
     case Tree::quotient:
-      own = 2;
+      precedence = 2;
       text = part(0, 2) + "/" + part(1, 3);
       break;
     case Tree::power:
       if (random() % 4 == 0) {
         text = "pow(" + part(0, 1) + "," + part(1, 1) + ")";
       } else {
-        own = 4;
+        precedence = 4;
         text = part(0, 5) + "^" + part(1, 3);
       }
       break;
@@ -453,7 +453,7 @@ std::string tree_text(const Tree& tree, int binding, std::mt19937& random) {
              part(3, 1) + ")";
       break;
   }
-  return own < binding || random() % 10 == 0 ? "(" + text + ")" : text;
+  return precedence < binding || random() % 10 == 0 ? "(" + text + ")" : text;
 }
 
 Tree random_tree(std::mt19937& random, int depth) {

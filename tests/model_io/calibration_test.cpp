@@ -103,13 +103,13 @@ TEST(Calibration, ReplacesACalibrationAmongOtherEffects) {
 
 TEST(Calibration, RemovalKeepsAUserFormula) {
   ModelDefinition file = fitted_model();
-  ModelEffect own;
-  own.id = "own-thermometer";
-  own.formula = "k";
-  own.location = EffectLocation::ambient_temperature;
-  own.parameter_names = {"k"};
-  own.parameters = {0.1};
-  file.model.effects.push_back(own);
+  ModelEffect effect;
+  effect.id = "own-thermometer";
+  effect.formula = "k";
+  effect.location = EffectLocation::ambient_temperature;
+  effect.parameter_names = {"k"};
+  effect.parameters = {0.1};
+  file.model.effects.push_back(effect);
   EXPECT_EQ(without_calibration(with_curve(file)).model.effects.back().id, "own-thermometer");
   // Both see the temperature as recorded, and add up.
   EXPECT_NEAR(applied(with_curve(file), -40.0), 0.1 + 1.06, 1e-12);

@@ -357,11 +357,11 @@ class ModelGenerator {
     std::vector<double> errors;
     for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
       const ModelEffect& effect = file.model.effects[e];
-      const std::vector<std::string> own = parameter_names(effect);
-      for (std::size_t i = 0; i < own.size(); ++i) {
+      const std::vector<std::string> parameters = parameter_names(effect);
+      for (std::size_t i = 0; i < parameters.size(); ++i) {
         const double error = file.fit(e, i).standard_error.value_or(1.0);
         if (!maybe() || error < 1e-100 || error > 1e100) continue;  // its square has to be a number
-        names.push_back(effect.id + "." + own[i]);
+        names.push_back(effect.id + "." + parameters[i]);
         errors.push_back(error);
       }
     }
@@ -762,7 +762,7 @@ TEST_P(BadInputTest, ErrorStatesPositionAndNames) {
   for (const std::string& name : input.names) EXPECT_THAT(error, IsError(Error::Code::definition, name));
 }
 
-const std::string own = "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { k = 1 }\n";
+const std::string user_formula = "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { k = 1 }\n";
 const std::string constant = "[[effect]]\nid = \"static-constant\"\n";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -874,7 +874,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"EffectWithoutId", "[[effect]]\nparameters = { a0 = 1 }\n", "5:1", {}},
         BadInput{"UnknownEffect", "[[effect]]\nid = \"static-pq\"\n", "6:6", {"static-pq", "static-qp"}},
         BadInput{"EffectTwice", constant + constant, "8:6", {"static-constant", "6"}},
-        BadInput{"FormulaTwice", own + own, "10:6", {"own", "6"}},
+        BadInput{"FormulaTwice", user_formula + user_formula, "10:6", {"own", "6"}},
         BadInput{"FormulaOfTheCatalogue",
                  constant + "formula = \"k * mach\"\nparameters = { k = 1 }\n",
                  "7:1",
@@ -899,7 +899,7 @@ INSTANTIATE_TEST_SUITE_P(
                  constant + "scaling = { static_pressure = -4 }\n",
                  "7:31",
                  {"-4", "-3 to 3"}},
-        BadInput{"ScalingOfAFormula", own + "scaling = { static_pressure = 1 }\n", "9:1", {"own"}},
+        BadInput{"ScalingOfAFormula", user_formula + "scaling = { static_pressure = 1 }\n", "9:1", {"own"}},
         BadInput{"PlaceOfACatalogueEffect", constant + "where = \"static\"\n", "7:1", {"where"}},
         BadInput{"UnknownStderr", constant + "stderr = { b = 1 }\n", "7:12", {"b"}},
         BadInput{"NegativeStderr", constant + "stderr = { a0 = -1 }\n", "7:17", {}},
@@ -927,10 +927,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { kk = 1 }\n",
                  "8:14",
                  {"kk", "k"}},
-        BadInput{"UnknownPlace", own + "where = \"statc\"\n", "9:9", {"statc", "static"}},
-        BadInput{"WrongUnitOfAFormula", own + "unit = \"Pa\"\n", "9:8", {"static", "Pa", "hPa"}},
+        BadInput{"UnknownPlace", user_formula + "where = \"statc\"\n", "9:9", {"statc", "static"}},
+        BadInput{"WrongUnitOfAFormula", user_formula + "unit = \"Pa\"\n", "9:8", {"static", "Pa", "hPa"}},
         BadInput{"WrongUnitAtAnotherPlace",
-                 own + "where = \"attack\"\nunit = \"hPa\"\n",
+                 user_formula + "where = \"attack\"\nunit = \"hPa\"\n",
                  "10:8",
                  {"attack", "deg"}},
         BadInput{"UnknownLawKey", "[law]\nvalid_form = \"2011-11-02\"\n", "6:1", {"valid_from"}},

@@ -92,9 +92,11 @@ TEST(Whitening, CovarianceBecomesTheIdentity) {
     covariance = level.asDiagonal() * covariance * level.asDiagonal();
     const Eigen::MatrixXd white =
         whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
-    const Eigen::MatrixXd left = white * covariance * white.transpose();
+    const Eigen::MatrixXd whitened_covariance = white * covariance * white.transpose();
     // Rounding; the sums of the autocovariance are cut off at negligible terms.
-    EXPECT_LT((left - Eigen::MatrixXd::Identity(level.size(), level.size())).cwiseAbs().maxCoeff(), 1e-10)
+    EXPECT_LT(
+        (whitened_covariance - Eigen::MatrixXd::Identity(level.size(), level.size())).cwiseAbs().maxCoeff(),
+        1e-10)
         << coefficients.size();
   }
 }

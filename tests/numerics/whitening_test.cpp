@@ -121,8 +121,8 @@ TEST(SlowNoise, ErrorOfAFlightMeanEqualsItsScatter) {
     constexpr unsigned flights = 40;
     for (unsigned seed = 1; seed <= flights; ++seed) {
       const std::vector<Eigen::VectorXd> residual{drifting(count, seed, 0.1, each.slow, each.memory)};
-      const Eigen::VectorXd left = residual[0].array() - residual[0].mean();
-      const NoiseModel noise = find_noise(bins, columns, {left}).model;
+      const Eigen::VectorXd centred = residual[0].array() - residual[0].mean();
+      const NoiseModel noise = find_noise(bins, columns, {centred}).model;
       const Whitening whitening(bins[0], noise, 0);
       const Eigen::VectorXd one = whitening(columns[0]);
       const double information = one.squaredNorm();

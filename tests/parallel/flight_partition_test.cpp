@@ -29,15 +29,15 @@ std::vector<std::uint64_t> loads(std::size_t ranks, const std::vector<std::uint6
   run_with_communicator(ranks, [&](Communicator& comm) {
     const FlightPartition partition(comm, sizes);
     EXPECT_EQ(partition.flights(), sizes.size());
-    std::size_t own = 0;
+    std::size_t local = 0;
     const std::lock_guard lock(counting);
     for (std::size_t flight = 0; flight < sizes.size(); ++flight) {
       if (!partition.is_local(flight)) continue;
       ++owners[flight];
-      ++own;
+      ++local;
       load[comm.rank()] += sizes[flight];
     }
-    EXPECT_EQ(partition.local_count(), own);
+    EXPECT_EQ(partition.local_count(), local);
   });
   EXPECT_THAT(owners, Each(1));
   return load;
@@ -192,12 +192,12 @@ TEST(PartitionOfEntries, BelongToTheOwnersOfTheirFlights) {
     const std::vector<std::size_t> flight_of_each{4, 0, 4, 49, 7};
     const FlightPartition entries = flights.of_entries(flight_of_each);
     ASSERT_EQ(entries.flights(), flight_of_each.size());
-    std::size_t own = 0;
+    std::size_t local = 0;
     for (std::size_t entry = 0; entry < flight_of_each.size(); ++entry) {
       EXPECT_EQ(entries.is_local(entry), flights.is_local(flight_of_each[entry]));
-      own += entries.is_local(entry) ? 1 : 0;
+      local += entries.is_local(entry) ? 1 : 0;
     }
-    EXPECT_EQ(entries.local_count(), own);
+    EXPECT_EQ(entries.local_count(), local);
   });
 }
 

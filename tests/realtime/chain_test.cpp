@@ -504,10 +504,11 @@ TEST(Calibration, MissingInputGivesAMissingTemperature) {
   const Model model =
       with(air.Truth::model(), written(EffectLocation::ambient_temperature, "k * altitude", {"k"}, {1e-4}));
   for (const Recorded& recorded : {air.recorded(), air.recorded_ambient()}) {
-    Model own = model;
-    if (recorded.count(Quantity::ambient_temperature) > 0) own.lams.approach = LamsApproach::with_temperature;
-    EXPECT_EQ(fly(own, with(recorded, Quantity::altitude, 3000)).flags.bits(), 0U);
-    const ChainResult s = fly(own, with(recorded, Quantity::altitude, missing));
+    Model variant = model;
+    if (recorded.count(Quantity::ambient_temperature) > 0)
+      variant.lams.approach = LamsApproach::with_temperature;
+    EXPECT_EQ(fly(variant, with(recorded, Quantity::altitude, 3000)).flags.bits(), 0U);
+    const ChainResult s = fly(variant, with(recorded, Quantity::altitude, missing));
     EXPECT_TRUE(s.has(Quality::effect_input_missing));
     EXPECT_TRUE(s.has(Quality::temperature_missing));
     EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
@@ -776,9 +777,9 @@ TEST(Upstream, EffectsOnTheBeamNeedNoInputWithoutALaser) {
   Model model;
   model.effects = {catalogued("lams-scale", {0.001}), catalogued("lams-pod-flex", {0.3}),
                    catalogued("static-constant", {0.005})};
-  const Model own = with(model, written(EffectLocation::beam_azimuth, "k * ROLLX", {"k"}, {0.1}));
+  const Model with_formula = with(model, written(EffectLocation::beam_azimuth, "k * ROLLX", {"k"}, {0.1}));
   const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
-  for (const Model& each : {model, own}) {
+  for (const Model& each : {model, with_formula}) {
     const Chain chain = build_chain(each, recorded);
     EXPECT_FALSE(chain.acts(EffectLocation::beam_speed));
     EXPECT_TRUE(chain.extra_names().empty());

@@ -53,11 +53,11 @@ void run(Loop& loop, const Sample& sample, double time) {
   loop.run(time);
 }
 
-/// A functor of a test's own, from a function of the state.
-class Own final : public Functor {
+/// A functor from a function of the state.
+class TestFunctor final : public Functor {
  public:
   using Function = std::function<void(State<double>&)>;
-  Own(std::vector<Quantity> inputs, std::vector<Quantity> outputs, Function function)
+  TestFunctor(std::vector<Quantity> inputs, std::vector<Quantity> outputs, Function function)
       : Functor(std::move(inputs), std::move(outputs)), function_(std::move(function)) {}
   void compute(State<double>& state, QualityFlags&) noexcept override { function_(state); }
 
@@ -65,14 +65,14 @@ class Own final : public Functor {
   Function function_;
 };
 
-std::unique_ptr<Functor> own(std::vector<Quantity> inputs, std::vector<Quantity> outputs,
-                             Own::Function function) {
-  return std::make_unique<Own>(std::move(inputs), std::move(outputs), std::move(function));
+std::unique_ptr<Functor> make_functor(std::vector<Quantity> inputs, std::vector<Quantity> outputs,
+                                      TestFunctor::Function function) {
+  return std::make_unique<TestFunctor>(std::move(inputs), std::move(outputs), std::move(function));
 }
 
 // Writes one more than the sum of its inputs.
 std::unique_ptr<Functor> sum(const std::vector<Quantity>& inputs, Quantity output) {
-  return own(inputs, {output}, [inputs, output](State<double>& state) {
+  return make_functor(inputs, {output}, [inputs, output](State<double>& state) {
     double total = 1.0;
     for (const Quantity input : inputs) total += state[input];
     state[output] = total;
@@ -117,7 +117,7 @@ std::uint32_t bits(std::initializer_list<Quality> list) {
 }
 
 // The quality bits of the sample that was run, without the one that is of an earlier sample.
-std::uint32_t own_bits(const Loop& loop) {
+std::uint32_t sample_bits(const Loop& loop) {
   return loop.quality().bits() & ~bits({Quality::filter_window_incomplete});
 }
 
@@ -129,7 +129,7 @@ void expect_same(const Loop& loop, const Loop& expected) {
     EXPECT_TRUE(value == requested || (std::isnan(value) && std::isnan(requested)))
         << pcor::info_of(result).name << ": " << value << " for " << requested;
   }
-  EXPECT_EQ(own_bits(loop), own_bits(expected));
+  EXPECT_EQ(sample_bits(loop), sample_bits(expected));
 }
 
 TEST(LoopOrder, IsIndependentOfTheOrderOfAddition) {
@@ -159,9 +159,10 @@ TEST(LoopOrder, AcceptsMoreFunctorsThanQuantities) {
   int seen = 0;
   const Quantity late = *loop.add_variable("late");
   for (int i = 0; i < 100; ++i) {
-    loop.add(own({late}, {}, [&seen, late](State<double>& state) { seen += state[late] == 1.0 ? 1 : 0; }));
+    loop.add(make_functor({late}, {},
+                          [&seen, late](State<double>& state) { seen += state[late] == 1.0 ? 1 : 0; }));
   }
-  loop.add(own({}, {late}, [late](State<double>& state) { state[late] = 1.0; }));
+  loop.add(make_functor({}, {late}, [late](State<double>& state) { state[late] = 1.0; }));
   std::string error;
   ASSERT_TRUE(loop.order(&error)) << error;
   loop.run(0.0);
@@ -174,7 +175,7 @@ TEST(LoopOrder, InPlaceFunctorsRunBeforeReaders) {
     const Quantity x = *loop.add_variable("x");
     const Quantity y = *loop.add_variable("y");
     if (reader_first) loop.add(sum({x}, y));
-    loop.add(own({x}, {x}, [x](State<double>& state) { state[x] *= 10.0; }));
+    loop.add(make_functor({x}, {x}, [x](State<double>& state) { state[x] *= 10.0; }));
     if (!reader_first) loop.add(sum({x}, y));
     ASSERT_TRUE(loop.order(nullptr));
     loop.state()[x] = 2.0;
@@ -305,7 +306,7 @@ TEST(Loop, SupersonicPressuresGiveNoResult) {
     run(loop,
         with_changes(recorded, {{Quantity::static_pressure, 250.0}, {Quantity::dynamic_pressure, 208.0}}),
         0.0);
-    EXPECT_EQ(own_bits(loop), bits({Quality::dry_air_assumed}));
+    EXPECT_EQ(sample_bits(loop), bits({Quality::dry_air_assumed}));
     EXPECT_NEAR(loop.state()[Quantity::corrected_mach], 0.96, 0.02);
   }
 }
@@ -348,7 +349,7 @@ TEST(LoopOrder, CircularDependencyIsRefusedAndReported) {
   loop.add(sum({b}, a));
   loop.add(sum({c}, b));
   loop.add(sum({a}, c));
-  loop.add(own({outside}, {}, [](State<double>&) {}));
+  loop.add(make_functor({outside}, {}, [](State<double>&) {}));
   std::string error;
   EXPECT_FALSE(loop.order(&error));
   EXPECT_THAT(
@@ -370,7 +371,7 @@ TEST(Loop, ReproducesEquation18) {
   const double humidity = 4.2 / (700.0 + defect);
   const double heating = std::pow(767.6 / (700.0 + defect), 2.0 / 7.0 / (1.0 + humidity / 7.0)) - 1.0;
   EXPECT_NEAR(s[Quantity::corrected_mach], std::sqrt(5.0 * (1.0 + humidity / 5.0) * heating), 1e-12);
-  EXPECT_EQ(own_bits(loop), 0U);
+  EXPECT_EQ(sample_bits(loop), 0U);
   for (const Quantity result : all_results)
     EXPECT_TRUE(std::isfinite(s[result])) << pcor::info_of(result).name;
 }
@@ -424,9 +425,9 @@ TEST(Loop, ComputesRatesForEffects) {
       run(loop, sample(i / rate), i / rate);
       EXPECT_EQ(std::isnan(loop.state()[Quantity::time]), static_cast<std::size_t>(i) < loop.delay());
       EXPECT_EQ(loop.last_time(), i / rate);
-      EXPECT_EQ(own_bits(loop), static_cast<std::size_t>(i) < loop.delay()
-                                    ? static_cast<std::uint32_t>(Quality::awaiting_later_samples)
-                                    : 0U);
+      EXPECT_EQ(sample_bits(loop), static_cast<std::size_t>(i) < loop.delay()
+                                       ? static_cast<std::uint32_t>(Quality::awaiting_later_samples)
+                                       : 0U);
     }
     const State<double> s = loop.state();
     const double time = (last - static_cast<double>(loop.delay())) / rate;
@@ -474,8 +475,8 @@ TEST(LoopOrder, WriterOfAQuantityWithARateIsRefused) {
   Model model;
   model.effects = {{"qcf-lag", {1.0}}};
   Loop loop = build(model, {{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 70.0}}, 1.0);
-  loop.add(own({Quantity::dynamic_pressure}, {Quantity::dynamic_pressure},
-               [](State<double>& state) { state[Quantity::dynamic_pressure] *= 10.0; }));
+  loop.add(make_functor({Quantity::dynamic_pressure}, {Quantity::dynamic_pressure},
+                        [](State<double>& state) { state[Quantity::dynamic_pressure] *= 10.0; }));
   std::string error;
   EXPECT_FALSE(loop.order(&error));
   EXPECT_THAT(error, HasSubstr("dynamic_pressure"));
@@ -488,7 +489,8 @@ TEST(LoopOrder, WriterOfAnInputOfTheAirspeedWithARateIsRefused) {
   const Sample sample = with_changes(level, {{Quantity::roll, 2.0}});
   const auto error_of_writer = [&](Quantity quantity) {
     Loop loop = build(model, sample, 1.0);
-    loop.add(own({quantity}, {quantity}, [quantity](State<double>& state) { state[quantity] *= 1.5; }));
+    loop.add(
+        make_functor({quantity}, {quantity}, [quantity](State<double>& state) { state[quantity] *= 1.5; }));
     std::string error;
     return loop.order(&error) ? std::string() : error;
   };
@@ -505,8 +507,8 @@ TEST(LoopOrder, FunctorCorrectsALateLaser) {
   Model model = c130();
   model.effects.push_back({"clock-skew", {2.0}});
   Loop before = build(model, level, 1.0), inside = build(model, level, 1.0);
-  inside.add(own({Quantity::lams_airspeed}, {Quantity::lams_airspeed},
-                 [](State<double>& state) { state[Quantity::lams_airspeed] *= 1.01; }));
+  inside.add(make_functor({Quantity::lams_airspeed}, {Quantity::lams_airspeed},
+                          [](State<double>& state) { state[Quantity::lams_airspeed] *= 1.01; }));
   std::string error;
   ASSERT_TRUE(inside.order(&error)) << error;
   for (int i = 0; i < 20; ++i) {
@@ -544,9 +546,9 @@ TEST(Loop, WetThermometerDriesAfterACloud) {
     for (; i < 20 * rate; ++i) run(loop, with_changes(level, {{Quantity::liquid_water, 0.4}}), i / rate);
     EXPECT_GT(loop.state()[Quantity::ambient_temperature], air + 1.7) << "2 K at the thermometer";
     for (; i < 30 * rate; ++i) run(loop, dry, i / rate);
-    const double left = (loop.state()[Quantity::ambient_temperature] - air) / 2.0;
+    const double remaining = (loop.state()[Quantity::ambient_temperature] - air) / 2.0;
     // exp(-1), the mean over the last sample; recovery makes it a few percent less.
-    EXPECT_NEAR(left, std::exp(-1.0), 0.04);
+    EXPECT_NEAR(remaining, std::exp(-1.0), 0.04);
     run(loop, dry, i / rate + 100.0);
     EXPECT_EQ(loop.state()[Quantity::ambient_temperature], air)
         << "after a gap nothing is known of the cloud";
@@ -947,18 +949,18 @@ TEST(LoopGap, FlagsAnIsolatedSample) {
 TEST(LoopGap, RestartSetsABit) {
   Loop loop = build(c130(), level, 1.0);
   run(loop, level, 0.0);
-  EXPECT_EQ(own_bits(loop), 0U) << "the first sample";
+  EXPECT_EQ(sample_bits(loop), 0U) << "the first sample";
   run(loop, level, 50.0);
-  EXPECT_EQ(own_bits(loop), bits({Quality::after_gap}));
+  EXPECT_EQ(sample_bits(loop), bits({Quality::after_gap}));
   run(loop, level, 51.0);
-  EXPECT_EQ(own_bits(loop), 0U);
+  EXPECT_EQ(sample_bits(loop), 0U);
   for (const double time : {51.0, 50.0, infinity, 52.0, -infinity, 53.0, missing, missing}) {
     run(loop, level, time);
-    EXPECT_EQ(own_bits(loop), bits({Quality::uneven_samples})) << time;
+    EXPECT_EQ(sample_bits(loop), bits({Quality::uneven_samples})) << time;
   }
   loop.reset();
   run(loop, level, 100.0);
-  EXPECT_EQ(own_bits(loop), 0U) << "after reset";
+  EXPECT_EQ(sample_bits(loop), 0U) << "after reset";
 }
 
 // Every sample restarts the watch of frozen sensors, and the wait for later samples.
@@ -1019,14 +1021,16 @@ TEST(LoopFunctors, CanRunBetweenModelStages) {
   const Quantity thrust = *loop.add_variable("THRUST");
   const Quantity speed = *loop.add_variable("N1");
   const Quantity mixing = *loop.add_variable("hygrometer");
-  loop.add(own({speed}, {thrust}, [=](State<double>& state) { state[thrust] = state[speed] / 200.0; }));
-  loop.add(own({mixing, Quantity::corrected_static_pressure}, {Quantity::vapor_pressure},
-               [=](State<double>& state) {
-                 state[Quantity::vapor_pressure] = state[mixing] * state[Quantity::corrected_static_pressure];
-               }));
+  loop.add(
+      make_functor({speed}, {thrust}, [=](State<double>& state) { state[thrust] = state[speed] / 200.0; }));
+  loop.add(make_functor(
+      {mixing, Quantity::corrected_static_pressure}, {Quantity::vapor_pressure}, [=](State<double>& state) {
+        state[Quantity::vapor_pressure] = state[mixing] * state[Quantity::corrected_static_pressure];
+      }));
   const Quantity twice = *loop.add_variable("twice the airspeed");
-  loop.add(own({Quantity::corrected_airspeed}, {twice},
-               [=](State<double>& state) { state[twice] = 2.0 * state[Quantity::corrected_airspeed]; }));
+  loop.add(make_functor({Quantity::corrected_airspeed}, {twice}, [=](State<double>& state) {
+    state[twice] = 2.0 * state[Quantity::corrected_airspeed];
+  }));
   std::string error;
   ASSERT_TRUE(loop.order(&error)) << error;
   for (int i = 0; i < 3; ++i) {
@@ -1050,8 +1054,8 @@ TEST(LoopFunctors, ImplausibleTemperatureIsMissing) {
                         {Quantity::ambient_temperature, 274.0}};
   for (const double temperature : {-5000.0, 5000.0}) {
     Loop loop = build(Model{}, recorded, 1.0);
-    loop.add(own({Quantity::corrected_static_pressure}, {Quantity::ambient_temperature},
-                 [=](State<double>& state) { state[Quantity::ambient_temperature] = temperature; }));
+    loop.add(make_functor({Quantity::corrected_static_pressure}, {Quantity::ambient_temperature},
+                          [=](State<double>& state) { state[Quantity::ambient_temperature] = temperature; }));
     std::string error;
     ASSERT_TRUE(loop.order(&error)) << error;
     run(loop, recorded, 0.0);
@@ -1076,8 +1080,8 @@ TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   run(with_model, level, 0.0);
   run(with_lams, level, 0.0);
   const State<double>& s = with_lams.state();
-  EXPECT_EQ(own_bits(with_model), 0U);
-  EXPECT_EQ(own_bits(with_lams), bits({Quality::corrected_with_lams}));
+  EXPECT_EQ(sample_bits(with_model), 0U);
+  EXPECT_EQ(sample_bits(with_lams), bits({Quality::corrected_with_lams}));
   EXPECT_EQ(s[Quantity::static_defect], with_model.state()[Quantity::static_defect]);
   EXPECT_EQ(s[Quantity::lams_static_defect], with_model.state()[Quantity::lams_static_defect]);
   EXPECT_NE(s[Quantity::lams_static_defect], s[Quantity::static_defect]);
@@ -1090,7 +1094,7 @@ TEST(LoopLams, CorrectsAndFlagsValidSamples) {
   run(with_model, unlocked, 1.0);
   run(with_lams, unlocked, 1.0);
   expect_same(with_lams, with_model);
-  EXPECT_EQ(own_bits(with_lams), bits({Quality::lams_missing}));
+  EXPECT_EQ(sample_bits(with_lams), bits({Quality::lams_missing}));
 }
 
 // Delta-p of a sample depended on the sideslip of the sample before.
@@ -1142,7 +1146,8 @@ TEST(Loop, LaserFilterCanBeOmitted) {
 // Delta-p from LAMS needs the humidity, so a humidity may not wait for the pressures that it corrects.
 TEST(LoopFunctors, CircularDependencyIsRefused) {
   const auto add_inlet = [](Loop loop, std::string* error) {
-    loop.add(own({Quantity::corrected_static_pressure}, {Quantity::vapor_pressure}, [](State<double>&) {}));
+    loop.add(make_functor({Quantity::corrected_static_pressure}, {Quantity::vapor_pressure},
+                          [](State<double>&) {}));
     return loop.order(error);
   };
   std::string error;
@@ -1245,7 +1250,7 @@ TEST(LoopLams, DefectBelowVacuumIsMissing) {
   Loop loop = build(model, radiometer, 1.0, CorrectWith::lams);
   run(loop, with_changes(radiometer, {{Quantity::lams_airspeed, 1e60}}), 0.0);
   EXPECT_THAT(loop.state()[Quantity::lams_static_defect], IsNan());
-  EXPECT_EQ(own_bits(loop), bits({Quality::lams_missing}));
+  EXPECT_EQ(sample_bits(loop), bits({Quality::lams_missing}));
 }
 
 struct QualityCase {
@@ -1334,7 +1339,7 @@ TEST(LoopQuality, BadInputIsFlaggedAndRemovesOnlyDependentResults) {
   for (const QualityCase& test : cases) {
     SCOPED_TRACE(test.name);
     run(loop, with_changes(level, test.changes), ++time);
-    EXPECT_EQ(own_bits(loop), test.expected) << std::hex << own_bits(loop);
+    EXPECT_EQ(sample_bits(loop), test.expected) << std::hex << sample_bits(loop);
     for (const Quantity result : all_results) {
       const bool lost = std::count(test.lost.begin(), test.lost.end(), result) > 0;
       const double value = loop.state()[result];
@@ -1450,7 +1455,8 @@ TEST(LoopIdentity, LamsReturnsAirspeedAndTemperature) {
         run(loop, sample, i / 25.0);
         const State<double>& s = loop.state();
         // A thermometer below the truth may imply saturated air.
-        ASSERT_EQ(own_bits(loop) & ~bits({Quality::humidity_limited}), bits({Quality::corrected_with_lams}));
+        ASSERT_EQ(sample_bits(loop) & ~bits({Quality::humidity_limited}),
+                  bits({Quality::corrected_with_lams}));
         const double laser =
             sample.at(Quantity::lams_airspeed) /
             pcor::beam_cosine(1.5, -0.8, sample.at(Quantity::attack), sample.at(Quantity::sideslip));

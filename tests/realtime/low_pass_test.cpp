@@ -172,10 +172,10 @@ TEST(LowPass, PassesALineWithMissingSamples) {
 TEST(LowPass, PassesPeriodsOfSixSecondsWithoutShift) {
   for (const double rate : low_pass_rates) {
     for (const double period : {6.0, 7.3, 8.0, 10.1, 12.0, 31.0, 60.0, 300.0}) {
-      const Response left = low_pass_response(rate, period);
-      EXPECT_NEAR(left.in_phase, 1.0, 0.006) << rate << " Hz, " << period << " s";
+      const Response response = low_pass_response(rate, period);
+      EXPECT_NEAR(response.in_phase, 1.0, 0.006) << rate << " Hz, " << period << " s";
       // A symmetric filter has no delay; the remainder is the rounding of 3000 products.
-      EXPECT_NEAR(left.in_quadrature, 0.0, 1e-9) << rate << " Hz, " << period << " s";
+      EXPECT_NEAR(response.in_quadrature, 0.0, 1e-9) << rate << " Hz, " << period << " s";
     }
     EXPECT_NEAR(low_pass_response(rate, 3.0).in_phase, 0.5, 0.005) << "half the amplitude";
   }

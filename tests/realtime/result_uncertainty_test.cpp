@@ -575,12 +575,12 @@ TEST(ResultUncertainty, IncludesCorrelations) {
 TEST(ResultUncertainty, NearlyCancellingErrorsKeepTheirRest) {
   Model model;
   model.effects = {{"static-constant", {0.004}}, {"psfd-bias", {0.0}}};
-  constexpr double a = 0.02, b = 14.0, left = 1e-8;
+  constexpr double a = 0.02, b = 14.0, epsilon = 1e-8;
   ModelUncertainty uncertainty;
-  uncertainty.covariance = {a * a, (1.0 - left) * a * b, (1.0 - left) * a * b, b * b};
+  uncertainty.covariance = {a * a, (1.0 - epsilon) * a * b, (1.0 - epsilon) * a * b, b * b};
   const State<double> s = state_of(model, everything_recorded(), uncertainty);
   // Rounding of the covariance: 1e-16 of a variance against 2e-8.
-  EXPECT_NEAR(s[Quantity::corrected_static_pressure_uncertainty], b * std::sqrt(2.0 * left), 1e-7 * b);
+  EXPECT_NEAR(s[Quantity::corrected_static_pressure_uncertainty], b * std::sqrt(2.0 * epsilon), 1e-7 * b);
 }
 
 TEST(ResultUncertainty, ImpossibleUncertaintyIsRefused) {

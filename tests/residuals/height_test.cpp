@@ -33,20 +33,20 @@ double pressure_of_height(double pressure) {
 }  // namespace
 
 TEST(Height, ResidualOfTheHydrostaticEquationIsZero) {
-  const std::vector<double> left = height_residuals(climb(), made::air_model());
-  for (std::size_t i = 30; i + 30 < left.size(); ++i) ASSERT_NEAR(left[i], 0.0, 1e-9) << i;
-  EXPECT_TRUE(std::isnan(left[29])) << "half a minute is needed on either side";
+  const std::vector<double> residual = height_residuals(climb(), made::air_model());
+  for (std::size_t i = 30; i + 30 < residual.size(); ++i) ASSERT_NEAR(residual[i], 0.0, 1e-9) << i;
+  EXPECT_TRUE(std::isnan(residual[29])) << "half a minute is needed on either side";
 }
 
 TEST(Height, DetectsThermometerBiasInEveryClimb) {
   // 300 m in a minute: the warm model takes them for 300 m (1 + 1/260).
   pcor::FlightSamples flight = climb();
   for (double& temperature : flight.model.columns[2].second) temperature += 1.0;
-  const std::vector<double> left = height_residuals(flight, made::air_model());
+  const std::vector<double> residual = height_residuals(flight, made::air_model());
   const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
   for (const std::size_t i : {200U, 900U, 1500U}) {
     const double expected = pressure_of_height(p[i]) * 300.0 / (made::air_temperature + 1.0);
-    EXPECT_NEAR(left[i], expected, 1e-6) << i;
+    EXPECT_NEAR(residual[i], expected, 1e-6) << i;
   }
 }
 
@@ -60,10 +60,10 @@ TEST(Height, IsInsensitiveToAProportionalPressureDefect) {
 TEST(Height, StaticPressureOffsetGrowsWithHeight) {
   // Subtracting one hPa from every reading makes a climb larger, by p d(1/p) in a minute: rho g 300 m / p.
   const pcor::FlightSamples flight = climb();
-  const std::vector<double> left = height_residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
+  const std::vector<double> residual = height_residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
   const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
   for (const std::size_t i : {200U, 900U, 1500U})
-    EXPECT_NEAR(left[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "second order; " << i;
+    EXPECT_NEAR(residual[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "second order; " << i;
 }
 
 TEST(Height, ResidualDerivativesAreCorrect) {
@@ -91,9 +91,9 @@ TEST(Height, GapsAndMissingValuesInterruptTheResidual) {
   pcor::FlightSamples flight = climb();
   flight.model.columns[2].second[900] = std::nan("");
   for (std::size_t i = 1200; i < flight.time.size(); ++i) flight.time[i] += 100.0;
-  const std::vector<double> left = height_residuals(flight, made::air_model());
-  for (const std::size_t i : {870U, 900U, 930U, 1171U, 1229U}) EXPECT_TRUE(std::isnan(left[i])) << i;
-  for (const std::size_t i : {869U, 931U, 1169U, 1230U}) EXPECT_FALSE(std::isnan(left[i])) << i;
+  const std::vector<double> residual = height_residuals(flight, made::air_model());
+  for (const std::size_t i : {870U, 900U, 930U, 1171U, 1229U}) EXPECT_TRUE(std::isnan(residual[i])) << i;
+  for (const std::size_t i : {869U, 931U, 1169U, 1230U}) EXPECT_FALSE(std::isnan(residual[i])) << i;
 }
 
 TEST(Height, RequiresATemperature) {

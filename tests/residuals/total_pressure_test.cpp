@@ -35,17 +35,18 @@ ModelDefinition other(const Effects& effects = {}) {
   return file;
 }
 
-std::vector<double> total_pressure_residuals(const Effects& own, const Effects& of_other) {
-  return made::residuals_of(two_system_flight(), made::air_model(own),
+std::vector<double> total_pressure_residuals(const Effects& of_model, const Effects& of_other) {
+  return made::residuals_of(two_system_flight(), made::air_model(of_model),
                             *pcor::total_pressure_reference(other(of_other)));
 }
 
 }  // namespace
 
 TEST(TotalPressure, IsIndependentOfStaticDefects) {
-  for (const auto& left : {total_pressure_residuals({}, {}),
-                           total_pressure_residuals({{"static-constant", 0.01}}, {{"static-qp", 0.05}})}) {
-    for (const double value : left) ASSERT_NEAR(value, 0.0, 1e-9);
+  for (const auto& residual :
+       {total_pressure_residuals({}, {}),
+        total_pressure_residuals({{"static-constant", 0.01}}, {{"static-qp", 0.05}})}) {
+    for (const double value : residual) ASSERT_NEAR(value, 0.0, 1e-9);
   }
 }
 

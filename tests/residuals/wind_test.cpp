@@ -64,8 +64,8 @@ TEST(Wind, EstimatesDeltaPErrorFromHeadingReversals) {
   // 1 hPa too much of delta-p is an airspeed too small by dV/dp; to second order of 1 hPa in 75.
   const pcor::ModelDefinition model = made::air_model({{"static-constant", 1.0 / 674.2}});
   for (const auto& heading : {circles, legs}) {
-    const std::vector<double> left = wind_residuals(flight_with_heading(heading), model);
-    for (const std::size_t i : {500U, 900U, 1290U}) EXPECT_NEAR(left[i], -1.0, 0.05) << i;
+    const std::vector<double> residual = wind_residuals(flight_with_heading(heading), model);
+    for (const std::size_t i : {500U, 900U, 1290U}) EXPECT_NEAR(residual[i], -1.0, 0.05) << i;
   }
 }
 
@@ -85,9 +85,9 @@ TEST(Wind, ResidualDerivativesAreCorrect) {
 TEST(Wind, GroundSamplesAreNotUsed) {
   pcor::FlightSamples parked = flight_with_heading(legs);
   std::fill_n(parked.motion.airspeed.begin(), 300, 5.0);
-  const std::vector<double> left = wind_residuals(parked, made::air_model());
-  EXPECT_TRUE(std::isnan(left[299]));
-  EXPECT_NEAR(left[300], 0.0, 0.03) << "and what was recorded there does not matter afterwards";
+  const std::vector<double> residual = wind_residuals(parked, made::air_model());
+  EXPECT_TRUE(std::isnan(residual[299]));
+  EXPECT_NEAR(residual[300], 0.0, 0.03) << "and what was recorded there does not matter afterwards";
 }
 
 TEST(Wind, FrozenSensorIsRejected) {
@@ -102,8 +102,8 @@ TEST(Wind, FrozenSensorIsRejected) {
     EXPECT_EQ(residuals.mask()[799], pcor::Mask::none);
     EXPECT_EQ(residuals.mask()[800], pcor::Mask::frozen);
     EXPECT_EQ(residuals.mask()[859], pcor::Mask::frozen);
-    const std::vector<double> left = residuals.values(residuals.parameters().data());
-    EXPECT_NEAR(left[790], 0.0, 0.03) << "nor do its neighbours in the quarter of an hour";
+    const std::vector<double> residual = residuals.values(residuals.parameters().data());
+    EXPECT_NEAR(residual[790], 0.0, 0.03) << "nor do its neighbours in the quarter of an hour";
   }
 }
 

@@ -54,14 +54,14 @@ class NetcdfMaker {
     int rank = 0, dimensions[NC_MAX_VAR_DIMS];
     check(nc_inq_var(id_, variable, nullptr, nullptr, &rank, dimensions, nullptr));
     std::vector<std::size_t> start(static_cast<std::size_t>(rank), 0), count;
-    std::size_t left = values.size();
+    std::size_t remaining = values.size();
     for (int i = 1; i < rank; ++i) {
       std::size_t length = 0;
       check(nc_inq_dimlen(id_, dimensions[i], &length));
-      left /= length;
+      remaining /= length;
       count.push_back(length);
     }
-    if (rank > 0) count.insert(count.begin(), left);
+    if (rank > 0) count.insert(count.begin(), remaining);
     if (!values.empty()) {
       const int status = nc_put_vara_double(id_, variable, start.data(), count.data(), values.data());
       if (status != NC_ERANGE) check(status);  // infinities are stored too

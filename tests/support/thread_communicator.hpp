@@ -45,18 +45,18 @@ inline std::vector<std::vector<std::size_t>> run_with_communicator(
     std::vector<std::size_t> sent{};
 
    private:
-    std::vector<std::string> exchange(const std::string& own) override {
-      sent.push_back(own.size());
+    std::vector<std::string> exchange(const std::string& local) override {
+      sent.push_back(local.size());
       if (one_at_a_time_) table_.working.unlock();
-      std::vector<std::string> all = exchange_with_others(own);
+      std::vector<std::string> all = exchange_with_others(local);
       if (one_at_a_time_) table_.working.lock();
       return all;
     }
 
-    std::vector<std::string> exchange_with_others(const std::string& own) {
+    std::vector<std::string> exchange_with_others(const std::string& local) {
       std::unique_lock lock(table_.mutex);
       const std::size_t round = table_.round;
-      table_.laid[rank_] = own;
+      table_.laid[rank_] = local;
       if (++table_.count == size_) {
         table_.all = table_.laid;
         table_.count = 0;

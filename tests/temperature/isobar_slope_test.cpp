@@ -67,12 +67,12 @@ TEST(IsobarSlope, EveryEstimateLeavesARemainder) {
        {IsobarSlope::level_legs, IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
     HeightRecord record = record_of(sloping());
     subtract_isobar_slope(record, option);
-    EXPECT_GT(record.slope_left, 0.0);
-    EXPECT_LT(record.slope_left, 1.0);
+    EXPECT_GT(record.slope_fraction, 0.0);
+    EXPECT_LT(record.slope_fraction, 1.0);
   }
   HeightRecord record = record_of(sloping());
   subtract_isobar_slope(record, IsobarSlope::fitted);
-  EXPECT_EQ(record.slope_left, 1.0);
+  EXPECT_EQ(record.slope_fraction, 1.0);
 }
 
 TEST(IsobarSlope, UndeterminedSlopeIsLeftToTheLikelihood) {
@@ -85,7 +85,7 @@ TEST(IsobarSlope, UndeterminedSlopeIsLeftToTheLikelihood) {
   HeightRecord no_directions = height_record(air, {}, {});
   const double before = range_of_excess(no_directions);
   subtract_isobar_slope(no_directions, IsobarSlope::whole_flight);
-  EXPECT_EQ(no_directions.slope_left, 1.0);
+  EXPECT_EQ(no_directions.slope_fraction, 1.0);
   EXPECT_EQ(range_of_excess(no_directions), before);
   EXPECT_THAT(no_directions.notes,
               ElementsAre(pcor::test::Says("heading"), pcor::test::Says("--slope fitted")));

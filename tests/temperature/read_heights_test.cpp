@@ -88,8 +88,9 @@ TEST(LawDoubt, EqualsTheMeanOfTheStatedUncertainty) {
   model.uncertainty.static_defect = 0.2;
   EXPECT_NEAR(*stated_law_variance(model, air), 0.04, 1e-12);
   model.uncertainty.static_defect_ratio = 4e-4;
-  const double left = 0.04 + mean(air, [&](std::size_t i) { return std::pow(4e-4 * air.pressure[i], 2); });
-  EXPECT_NEAR(*stated_law_variance(model, air), left, 1e-12);
+  const double by_uncertainty =
+      0.04 + mean(air, [&](std::size_t i) { return std::pow(4e-4 * air.pressure[i], 2); });
+  EXPECT_NEAR(*stated_law_variance(model, air), by_uncertainty, 1e-12);
 
   // delta-p of equation 18 is a0 p + a1 r p + a2 q of the measured pressures, r the radome ratio: the
   // variance by a0 and a2, which are not independent, is that of p da0 + q da2.
@@ -102,7 +103,7 @@ TEST(LawDoubt, EqualsTheMeanOfTheStatedUncertainty) {
   });
   // delta-p is linear in them, and one standard deviation of 1e-4 and 6e-4 is a difference of 0.05 hPa,
   // rounded to 1e-13.
-  EXPECT_NEAR(*stated_law_variance(model, air), left + by_law, 1e-6 * by_law);
+  EXPECT_NEAR(*stated_law_variance(model, air), by_uncertainty + by_law, 1e-6 * by_law);
 }
 
 }  // namespace

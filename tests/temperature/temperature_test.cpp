@@ -293,8 +293,8 @@ TEST_F(Temperature, HumidityErrorIsNotAssignedToThermometer) {
     const TemperatureResult result = fit_temperature({flight}, model());
     EXPECT_THAT(result.rejection_reason, Not(IsEmpty())) << seed;
     // The truth is 25 % of the measured value, reduced by the prior of 10 %; three standard deviations.
-    const double left = 1.0 - std::pow(result.humidity_error / 0.1, 2);
-    EXPECT_NEAR(result.humidity_change, 0.25 * left, 3.0 * result.humidity_error) << seed;
+    const double shrinkage = 1.0 - std::pow(result.humidity_error / 0.1, 2);
+    EXPECT_NEAR(result.humidity_change, 0.25 * shrinkage, 3.0 * result.humidity_error) << seed;
     EXPECT_LT(result.humidity_error, 0.1) << seed;
     fs::remove(flight);
   }

@@ -33,7 +33,7 @@ struct AddArguments {
 };
 
 /// User-defined effect. @throws Error if the options do not define one.
-ModelEffect own_effect(const AddArguments& options, const std::vector<std::string>& variables) {
+ModelEffect user_effect(const AddArguments& options, const std::vector<std::string>& variables) {
   if (options.effects.size() != 1) {
     throw Error(Error::Code::usage,
                 fmt::format("--formula defines one effect, but {} are named: {}; give one name",
@@ -137,7 +137,7 @@ void run(const AddArguments& options) {
       flight == nullptr ? std::vector<std::string>() : flight->variables();
   std::vector<ModelEffect> effects;
   if (!options.formula.empty()) {
-    effects.push_back(own_effect(options, variables));
+    effects.push_back(user_effect(options, variables));
   } else {
     for (const std::string& id : options.effects) {
       const std::optional<ModelEffect> surface = surface_argument(id, flight, model);

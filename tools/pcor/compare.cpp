@@ -85,8 +85,8 @@ ShownParts shown_parts(const ModelComparison& model, std::size_t max_regimes, st
       ++shown.omitted;
   };
   for (const PartStatistics& part : model.regimes) {
-    const auto own = rank(part.statistics);
-    add(part, own.first || own >= least, shown.regimes);
+    const auto part_rank = rank(part.statistics);
+    add(part, part_rank.first || part_rank >= least, shown.regimes);
   }
   for (std::size_t i = 0; i < bands.size(); ++i) add(bands[i], i < max_bands, shown.bands);
   return shown;
@@ -250,12 +250,12 @@ void print(const ComparisonWithGps& result, const std::vector<ComparedModel>& mo
 }
 
 /// Adds the references of a model to the references of earlier models, without repetition.
-void add_references(ChosenReferences& all, const ChosenReferences& own) {
-  for (const auto& reference : own.used) {
+void add_references(ChosenReferences& all, const ChosenReferences& of_model) {
+  for (const auto& reference : of_model.used) {
     const auto same = [&reference](const auto& other) { return other->name() == reference->name(); };
     if (std::none_of(all.used.begin(), all.used.end(), same)) all.used.push_back(reference);
   }
-  for (const std::string& why_not : own.not_used) {
+  for (const std::string& why_not : of_model.not_used) {
     if (std::find(all.not_used.begin(), all.not_used.end(), why_not) == all.not_used.end())
       all.not_used.push_back(why_not);
   }
@@ -361,9 +361,9 @@ void run(const CompareArguments& options) {
   ChosenReferences references;  // references of all models, for printing
   for (const std::string& path : options.models) {
     const ModelDefinition model = read_model_for(path, flights, options.common);
-    const ChosenReferences own = read_references(options.comparison.references, model, flights);
-    add_references(references, own);
-    models.push_back({model.model.name, model, own.used});
+    const ChosenReferences of_model = read_references(options.comparison.references, model, flights);
+    add_references(references, of_model);
+    models.push_back({model.model.name, model, of_model.used});
   }
   name_by_file(models, options.models);
   CompareOptions compare_options;

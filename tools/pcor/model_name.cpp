@@ -46,8 +46,8 @@ bool ends_with(std::string_view text, std::string_view end) {
 /// at the configured installation path.
 std::vector<fs::path> model_folders() {
   std::vector<fs::path> folders;
-  if (const char* const own = std::getenv("PCOR_MODELS")) {
-    std::istringstream list(own);
+  if (const char* const user_folders = std::getenv("PCOR_MODELS")) {
+    std::istringstream list(user_folders);
     for (std::string folder; std::getline(list, folder, ':');) {
       if (!folder.empty()) folders.emplace_back(folder);
     }

@@ -286,10 +286,10 @@ FlightTable flight_table(const RefitResult& all, const ModelDefinition& model, c
                                  cell(flight.after.rms),
                                  cell(flight.after.noise_rms)};
     for (const std::string& name : fitted) {
-      const std::vector<FittedParameter>& own = alone[flight.flight];
-      const auto parameter = std::find_if(own.begin(), own.end(),
+      const std::vector<FittedParameter>& parameters = alone[flight.flight];
+      const auto parameter = std::find_if(parameters.begin(), parameters.end(),
                                           [&name](const FittedParameter& each) { return each.name == name; });
-      const bool is_known = !flight.holdout && parameter != own.end();
+      const bool is_known = !flight.holdout && parameter != parameters.end();
       row.push_back(is_known ? cell(parameter->value) : "");
       row.push_back(is_known ? cell(parameter->standard_error) : "");
     }

@@ -65,10 +65,10 @@ struct Surface {
     for (std::size_t i = 0; i < axis.count; ++i) {
       const S from = position - S(static_cast<double>(i) - 1.0);  // the middle of spline i
       const S distance = select(from < S(0.0), S(-from), from);
-      const S left = S(2.0) - distance;
+      const S to_edge = S(2.0) - distance;
       const S near = S(2.0 / 3.0) + distance * distance * (S(0.5) * distance - S(1.0));
-      const S far = left * left * left * S(1.0 / 6.0);
-      values[i] = select(distance < S(1.0), near, select(left < S(0.0), S(0.0), far));
+      const S far = to_edge * to_edge * to_edge * S(1.0 / 6.0);
+      values[i] = select(distance < S(1.0), near, select(to_edge < S(0.0), S(0.0), far));
     }
     return values;
   }

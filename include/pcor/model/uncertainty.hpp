@@ -84,30 +84,31 @@ inline std::optional<std::vector<std::vector<double>>> covariance_root(std::vect
   // the variable of the largest variance. Those below the rounding errors belong to the root only as
   // long as no covariance exceeds them.
   std::vector<std::vector<double>> root;
-  std::vector<std::size_t> left(size);
-  for (std::size_t i = 0; i < size; ++i) left[i] = i;
+  std::vector<std::size_t> remaining(size);
+  for (std::size_t i = 0; i < size; ++i) remaining[i] = i;
   bool is_checked = false;
-  while (!left.empty()) {
-    std::sort(left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return at(a, a) < at(b, b); });
-    const std::size_t known = left.back();
+  while (!remaining.empty()) {
+    std::sort(remaining.begin(), remaining.end(),
+              [&](std::size_t a, std::size_t b) { return at(a, a) < at(b, b); });
+    const std::size_t known = remaining.back();
     const double variance = at(known, known);
     const auto all_below = [&](double limit) {
-      return std::all_of(left.begin(), left.end(), [&](std::size_t i) {
-        return std::all_of(left.begin(), left.end(),
+      return std::all_of(remaining.begin(), remaining.end(), [&](std::size_t i) {
+        return std::all_of(remaining.begin(), remaining.end(),
                            [&](std::size_t j) { return std::abs(at(i, j)) <= limit; });
       });
     };
-    if (!is_checked && at(left.front(), left.front()) < -rounding) return std::nullopt;
+    if (!is_checked && at(remaining.front(), remaining.front()) < -rounding) return std::nullopt;
     if (!is_checked && variance <= rounding) {
       if (!all_below(2.0 * rounding)) return std::nullopt;
       is_checked = true;
     }
     if (is_checked && (variance < 1e-12 || !all_below(1.01 * variance))) break;
     std::vector<double>& change = root.emplace_back(size, 0.0);
-    for (const std::size_t i : left) change[i] = at(i, known) / std::sqrt(variance) * scale[i];
-    left.pop_back();
-    for (const std::size_t i : left) {
-      for (const std::size_t j : left) at(i, j) -= at(i, known) * at(known, j) / variance;
+    for (const std::size_t i : remaining) change[i] = at(i, known) / std::sqrt(variance) * scale[i];
+    remaining.pop_back();
+    for (const std::size_t i : remaining) {
+      for (const std::size_t j : remaining) at(i, j) -= at(i, known) * at(known, j) / variance;
     }
   }
   return root;

@@ -14,7 +14,7 @@ class MpiCommunicator final : public Communicator {
   std::size_t size() const override { return size_; }
 
  private:
-  std::vector<std::string> exchange(const std::string& own) override;
+  std::vector<std::string> exchange(const std::string& local) override;
 
   std::size_t rank_ = 0;
   std::size_t size_ = 1;

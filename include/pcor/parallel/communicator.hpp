@@ -33,7 +33,7 @@ class Communicator {
   /// work
   /// @throws Error if ranks called `fail` instead: the error of the lowest `order`, then of the lowest rank.
   /// Error if the ranks are in different states.
-  std::vector<std::string> all_gather(const std::string& own, std::uint64_t state = 0);
+  std::vector<std::string> all_gather(const std::string& local, std::uint64_t state = 0);
 
   /// Fails while the other ranks gather; all throw the same error and may continue after it.
   /// @param order of the error in a serial run: 0 before any flight, then by flight
@@ -48,9 +48,9 @@ class Communicator {
   struct Message;
 
   /// Gives each rank the bytes of all, in the order of ranks.
-  virtual std::vector<std::string> exchange(const std::string& own) { return {own}; }
+  virtual std::vector<std::string> exchange(const std::string& local) { return {local}; }
 
-  std::vector<Message> talk(const Message& own);
+  std::vector<Message> talk(const Message& local);
 
   bool has_parted_ = false;
   std::optional<Error> parted_with_{};

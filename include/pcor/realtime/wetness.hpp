@@ -30,8 +30,8 @@ class Wetness {
   /// @param liquid_water g/m3
   /// @param step s since the previous sample; NaN: the last step, at first that of the rate
   double operator()(double liquid_water, double step = missing<double>()) noexcept {
-    constexpr double alike = 1e-6;
-    if (std::abs(step - step_) > alike * step_) {
+    constexpr double tolerance = 1e-6;
+    if (std::abs(step - step_) > tolerance * step_) {
       step_ = step;
       wet_ = Answer(step, wetting);
       dry_ = Answer(step, drying_);
@@ -41,7 +41,7 @@ class Wetness {
     const Answer& answer = cloud > 0.0 ? wet_ : dry_;
     if (is_missing(wetness_)) wetness_ = towards;
     const double away = wetness_ - towards;
-    wetness_ = towards + away * answer.left;
+    wetness_ = towards + away * answer.remaining;
     return is_missing(cloud) ? cloud : towards + away * answer.mean;
   }
 
@@ -49,8 +49,8 @@ class Wetness {
   /// Remaining fraction of the distance from equilibrium, after a sample and averaged over it.
   struct Answer {
     Answer(double step, double tau)
-        : left(tau > 0.0 ? std::exp(-step / tau) : 0.0), mean(tau / step * (1.0 - left)) {}
-    double left;
+        : remaining(tau > 0.0 ? std::exp(-step / tau) : 0.0), mean(tau / step * (1.0 - remaining)) {}
+    double remaining;
     double mean;
   };
 

@@ -75,8 +75,8 @@ class WindOnSamples final : public WindowedResidual<WindOnSamples, 1> {
       const std::size_t k = samples[i] - span.first;
       const Sums<S>& before = sums[k - std::min(k, half_width())];
       const Sums<S>& after = sums[std::min(k + half_width() + 1, span.length())];
-      const S left = parts[k][0] - after.wind_along(heading_[samples[i]], before);
-      out[i] = left / S(speed_of_defect(samples[i]));
+      const S residual = parts[k][0] - after.wind_along(heading_[samples[i]], before);
+      out[i] = residual / S(speed_of_defect(samples[i]));
     }
   }
 
