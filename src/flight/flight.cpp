@@ -17,11 +17,10 @@
 #include <unordered_map>
 
 #include "base/phrasing.hpp"
-#include "base/quoting.hpp"
 #include "flight/block_cache.hpp"
-#include "flight/called_corrected.hpp"
 #include "flight/current_input.hpp"
 #include "flight/flight_file.hpp"
+#include "flight/missing_variable.hpp"
 #include "flight/record_means.hpp"
 #include "flight/registration.hpp"
 #include "flight/status_flags.hpp"
@@ -108,21 +107,6 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   return variable;
 }
 
-// UDUNITS treats an angle as a plain number, so a count would convert to it.
-bool is_angle(const std::string& unit) {
-  const std::string standard = standard_unit(unit);
-  return (standard.rfind("deg", 0) == 0 || standard.rfind("rad", 0) == 0) && is_convertible(unit, "radian");
-}
-
-// Number of words of a role ("recovery_temperature") in a text, without regard to case.
-std::ptrdiff_t shared_words(std::string role, const std::string& text) {
-  std::replace(role.begin(), role.end(), '_', ' ');
-  const std::vector<std::string> words = split_words(role);
-  return std::count_if(words.begin(), words.end(), [&text](const std::string& word) {
-    return strcasestr(text.c_str(), word.c_str()) != nullptr;
-  });
-}
-
 /// The first of some global attributes that has a text; empty without such an attribute.
 std::string first_attribute(const Flight& flight, std::initializer_list<const char*> names) {
   for (const char* const name : names) {
@@ -204,81 +188,11 @@ struct Flight::Implementation {
   Variable& find(const std::string& name) {
     const auto found = index.find(name);
     if (found != index.end()) return variable(found->second);
-    const std::vector<std::string> alike = suggest(name, names);
+    const std::vector<std::string> similar = suggest(name, names);
     file->refuse(Error::Code::variable, ": {} is not in this file; it has {}", name,
-                 alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), shell_path(path()))
-                               : fmt::format("{}", fmt::join(alike, ", ")));
-  }
-
-  // Error for a variable of the model that is absent from the file, with the time series that could replace
-  // it: series whose unit converts to `requested` and whose name is similar to `name`; if no name is similar,
-  // up to six series whose long names share most words with the role. Corrected pressures are not proposed.
-  [[noreturn]] void refuse_missing(const std::string& name, const std::string& requested,
-                                   const std::string& role) {
-    std::vector<const VariableInfo*> fitting;
-    std::vector<std::string> namesakes;
-    std::vector<std::string> corrected;  // pressures that a law would correct a second time
-    // The unit of a ratio is that of many other variables.
-    const bool is_ratio = is_convertible(requested, "1") && !is_angle(requested);
-    // Files call the temperature of the recovery probe "total".
-    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const VariableInfo& each = variable(i).info;
-      if (!each.is_series || !is_convertible(each.units, requested) ||
-          is_angle(each.units) != is_angle(requested))
-        continue;
-      const bool is_namesake = each.name.compare(0, 2, name, 0, 2) == 0;
-      if (requested == "hPa" && is_called_corrected(each.long_name)) {
-        if (is_namesake) corrected.push_back(each.name);
-        continue;
-      }
-      if (!is_ratio || is_namesake || shared_words(words, each.long_name) > 0) fitting.push_back(&each);
-      if (is_namesake) namesakes.push_back(each.name);
-    }
-    const std::vector<std::string> alike = suggest(name, namesakes);
-    const std::string shown = shortened(name);
-    if (!alike.empty())
-      file->refuse(Error::Code::variable,
-                   ": {} is not in this file; it has {}; if that is the same measurement, change {} in the "
-                   "[variables] of the model that names it",
-                   shown, fmt::format("{}", fmt::join(alike, ", ")), role);
-    const bool has_raw = std::any_of(fitting.begin(), fitting.end(), [&](const VariableInfo* each) {
-      return shared_words(words, each->long_name) > 1 && shared_words("raw", each->long_name) > 0;
-    });
-    if ((!corrected.empty() && !has_raw) || (fitting.empty() && is_ratio))
-      file->refuse(Error::Code::variable,
-                   ": {} ({} of the model) is not in this file{}; give another model for this flight, see "
-                   "pcor inspect {}",
-                   shown, role,
-                   corrected.empty()
-                       ? ""
-                       : fmt::format("; it has only {}, already corrected", fmt::join(corrected, ", ")),
-                   shell_path(path()));
-    if (fitting.empty())
-      file->refuse(Error::Code::variable,
-                   ": {} ({} of the model) is not in this file; it has no time series in {} or a unit that "
-                   "converts to it, see ncdump -h {}; change [variables] of the model",
-                   shown, role, requested, shell_path(path()));
-
-    constexpr std::size_t max_named = 6;
-    std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
-      return shared_words(words, a->long_name) > shared_words(words, b->long_name);
-    });
-    const std::size_t others = fitting.size() - std::min(fitting.size(), max_named);
-    fitting.resize(fitting.size() - others);
-    std::string named;
-    for (std::size_t i = 0; i < fitting.size(); ++i) {
-      named += (i == 0 ? "" : ", ") + fitting[i]->name;
-      const bool unit_changes =
-          i + 1 == fitting.size() || standard_unit(fitting[i]->units) != standard_unit(fitting[i + 1]->units);
-      if (unit_changes) named += " in " + standard_unit(fitting[i]->units);
-    }
-    if (others > 0) named += fmt::format(" and {} more", others);
-    file->refuse(
-        Error::Code::variable,
-        ": {} ({} of the model) is not in this file; it has {} (units that fit); change [variables] of "
-        "the model",
-        shown, role, named);
+                 similar.empty()
+                     ? fmt::format("{} others, see ncdump -h {}", names.size(), shell_path(path()))
+                     : fmt::format("{}", fmt::join(similar, ", ")));
   }
 
   // The names of rates that can be brought to the requested one, as this file has them: "1, 5 or 25".
@@ -499,9 +413,13 @@ const VariableInfo& Flight::variable(const std::string& name) const {
 
 UnitConversion Flight::conversion(const std::string& name, const std::string& requested,
                                   const std::string& role, const std::string& stated) const {
-  if (!has(name) && !role.empty()) implementation_->refuse_missing(name, requested, role);
-  const std::string& own = variable(name).units;
-  if (stated.empty()) return UnitConversion::between(own, requested, {name, path().string(), role});
+  if (!has(name) && !role.empty()) {
+    std::vector<VariableInfo> all;
+    for (const std::string& each : variables()) all.push_back(variable(each));
+    refuse_missing(file(), all, name, requested, role);
+  }
+  const std::string& recorded = variable(name).units;
+  if (stated.empty()) return UnitConversion::between(recorded, requested, {name, path().string(), role});
   if (!is_convertible(stated, requested))
     file().refuse(
         Error::Code::unit,
@@ -540,16 +458,16 @@ RejectedCounts Flight::read(const std::string& name, RecordBlock block, const Un
 RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
                                     const UnitConversion& conversion, double* out) const {
   Variable& variable = implementation_->find_series(name);
-  const int own = variable.info.rate;
-  if (rate == own) return read(name, block, conversion, out);
+  const int recorded = variable.info.rate;
+  if (rate == recorded) return read(name, block, conversion, out);
   if (rate < 1) file().refuse(Error::Code::usage, ": {} samples a record are impossible", rate);
-  if (rate % own != 0 && own % rate != 0)
+  if (rate % recorded != 0 && recorded % rate != 0)
     file().refuse(Error::Code::samples,
                   ": {} has {} samples a record, which cannot be converted to {}; choose a variable with {} "
                   "samples a record",
-                  name, own, rate, implementation_->rates_that_fit(rate));
+                  name, recorded, rate, implementation_->rates_that_fit(rate));
   std::vector<double>& values = implementation_->scratch;
-  values.resize(block.count * static_cast<std::size_t>(own));
+  values.resize(block.count * static_cast<std::size_t>(recorded));
   RejectedCounts excluded = implementation_->read(variable, block, values.data());
   for (double& value : values) {
     if (std::isnan(value) || !std::isnan(conversion(value))) continue;
@@ -557,8 +475,8 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
     ++excluded.impossible;
   }
   const auto requested = block.count * static_cast<std::size_t>(rate);
-  if (rate > own) {
-    const auto held = static_cast<std::size_t>(rate / own);
+  if (rate > recorded) {
+    const auto held = static_cast<std::size_t>(rate / recorded);
     for (std::size_t i = 0; i < requested; ++i) out[i] = conversion(values[i / held]);
     return excluded;
   }
