@@ -86,9 +86,9 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(x);
   if (decomposition.rank() < x.cols()) return fit;
   const Eigen::VectorXd solution = decomposition.solve(right);
-  const Eigen::VectorXd left = right - x * solution;
-  Eigen::Map<Eigen::VectorXd>(fit.residuals.data(), as_index(y.size()))(indices) = left;
-  fit.rms = std::sqrt(left.squaredNorm() / static_cast<double>(fit.samples));
+  const Eigen::VectorXd residual = right - x * solution;
+  Eigen::Map<Eigen::VectorXd>(fit.residuals.data(), as_index(y.size()))(indices) = residual;
+  fit.rms = std::sqrt(residual.squaredNorm() / static_cast<double>(fit.samples));
 
   const Eigen::MatrixXd inverse = inverse_of(x.transpose() * x);
   const Eigen::MatrixXd covariance =

@@ -177,10 +177,10 @@ class RestrictedLikelihood {
     const double limit = 9.0 * deviation * deviation;
     const double squares = innovation.array().square().min(limit).sum() / clipped_variance;
     const auto count = static_cast<double>(count_);
-    const auto freedom = static_cast<double>(count_ - width);
+    const auto degrees_of_freedom = static_cast<double>(count_ - width);
     Value value;
-    value.variance = squares / freedom;
-    value.restricted = determinant + columns + freedom * std::log(value.variance);
+    value.variance = squares / degrees_of_freedom;
+    value.restricted = determinant + columns + degrees_of_freedom * std::log(value.variance);
     value.plain = determinant + count * std::log(squares / count);
     return value;
   }
@@ -309,10 +309,10 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     if (sizes[k] == 0.0) continue;
     std::vector<double> without = sizes;
     without[k] = 0.0;
-    const double left = cost(without);
-    if (!(left < minimum + worth_of_a_part)) continue;
+    const double cost_without = cost(without);
+    if (!(cost_without < minimum + worth_of_a_part)) continue;
     sizes = without;
-    minimum = left;
+    minimum = cost_without;
   }
   found.drift_gain = cost(std::vector<double>(sizes.size(), 0.0)) - minimum;
   const RestrictedLikelihood::Value best = with(sizes);

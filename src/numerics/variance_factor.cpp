@@ -15,7 +15,7 @@ InformationPart part_of_rows(const Eigen::MatrixXd& products, const Eigen::Vecto
 double variance_factor(const std::vector<InformationPart>& parts, const Eigen::MatrixXd& covariance,
                        Eigen::Index count, double before) {
   double chi2 = 4.0;
-  double freedom = 4.0;
+  double degrees_of_freedom = 4.0;
   const Eigen::MatrixXd to_changes = covariance.topRows(count);
   const Eigen::MatrixXd weight = information_inverse(covariance.topLeftCorner(count, count));
   for (const auto& [information, score] : parts) {
@@ -27,9 +27,9 @@ double variance_factor(const std::vector<InformationPart>& parts, const Eigen::M
     const double squares = (expected * expected).trace();  // half of the variance
     if (!(mean > 0.0) || !(squares > 0.0)) continue;
     chi2 += before * change.dot(weight * change) * mean / squares;
-    freedom += mean * mean / squares;
+    degrees_of_freedom += mean * mean / squares;
   }
-  return std::max(1.0, chi2 / freedom);
+  return std::max(1.0, chi2 / degrees_of_freedom);
 }
 
 }  // namespace pcor::internal
