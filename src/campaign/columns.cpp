@@ -295,11 +295,11 @@ void put_gps(GpsKind kind, const CandidateModels& set, const System& system, con
   if (columns.gps.rows.size() == 0) return;
   if (kind == GpsKind::height) columns.gps = gps_system(rows_at(thermometer_of(columns.gps, usual)), usual);
   // The coefficients of other systems do not change a comparison with GPS.
-  const Eigen::MatrixXf own_columns = std::move(columns.gps.rows);
+  const Eigen::MatrixXf rows_of_gps = std::move(columns.gps.rows);
   const Eigen::Index others = columns.base.cols() - free;
-  columns.gps.rows = Eigen::MatrixXf::Zero(own_columns.rows(), own_columns.cols() + others);
-  columns.gps.rows.leftCols(free) = own_columns.leftCols(free);
-  columns.gps.rows.rightCols(own_columns.cols() - free) = own_columns.rightCols(own_columns.cols() - free);
+  columns.gps.rows = Eigen::MatrixXf::Zero(rows_of_gps.rows(), rows_of_gps.cols() + others);
+  columns.gps.rows.leftCols(free) = rows_of_gps.leftCols(free);
+  columns.gps.rows.rightCols(rows_of_gps.cols() - free) = rows_of_gps.rightCols(rows_of_gps.cols() - free);
 }
 
 /// Base and candidate columns of a flight, in bins.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double redundant_below = 1e-3;  // share of the variance after the base, given other groups
 /// Minimum share of a column's variance that the base does not explain; single precision has errors of 1e-6.
-constexpr double min_left = 1e-6;
+constexpr double min_remaining = 1e-6;
 /// Minimum length of the column of a shape, whitened. Shorter columns explain no residual: their coefficients
 /// have a prior of variance 1. The rounding errors of a zero column would make the equations singular.
 constexpr double min_shape = 1e-3;
@@ -85,16 +85,16 @@ std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<D
 }
 
 /// Columns of a group that the base and its other columns do not imitate, ascending.
-/// @param left products of its columns, of unit length, after the base
-std::vector<Eigen::Index> identifiable_of(Eigen::MatrixXd left) {
+/// @param products of its columns, of unit length, after the base
+std::vector<Eigen::Index> identifiable_of(Eigen::MatrixXd products) {
   std::vector<Eigen::Index> identifiable;
-  while (identifiable.size() < static_cast<std::size_t>(left.cols())) {
+  while (identifiable.size() < static_cast<std::size_t>(products.cols())) {
     Eigen::Index next = 0;
-    const double pivot = left.diagonal().maxCoeff(&next);
-    if (!(pivot > min_left)) break;
+    const double pivot = products.diagonal().maxCoeff(&next);
+    if (!(pivot > min_remaining)) break;
     identifiable.push_back(next);
-    left -= Eigen::MatrixXd(left.col(next) * left.row(next) / pivot);
-    for (const Eigen::Index column : identifiable) left(column, column) = 0.0;
+    products -= Eigen::MatrixXd(products.col(next) * products.row(next) / pivot);
+    for (const Eigen::Index column : identifiable) products(column, column) = 0.0;
   }
   std::sort(identifiable.begin(), identifiable.end());
   return identifiable;
@@ -122,17 +122,17 @@ std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
   std::vector<Eigen::Index> indices(static_cast<std::size_t>(base));
   std::iota(indices.begin(), indices.end(), Eigen::Index{0});
   for (const std::size_t group : some) {
-    const std::vector<Eigen::Index> own = indices_of(groups[group], base);
-    indices.insert(indices.end(), own.begin(), own.end());
+    const std::vector<Eigen::Index> of_group = indices_of(groups[group], base);
+    indices.insert(indices.end(), of_group.begin(), of_group.end());
   }
   return indices;
 }
 
 double distinct_squares(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
-                        const std::vector<Eigen::Index>& own, const Eigen::VectorXd& coefficients) {
-  const Eigen::VectorXd across = information(rest, own) * coefficients;
+                        const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& coefficients) {
+  const Eigen::VectorXd across = information(rest, columns) * coefficients;
   const double imitated = across.dot(pseudo_solution(information(rest, rest), across));
-  return std::max(0.0, coefficients.dot(information(own, own) * coefficients) - imitated);
+  return std::max(0.0, coefficients.dot(information(columns, columns) * coefficients) - imitated);
 }
 
 EffectSearch::EffectSearch(const WhitenedSystem& scores, Eigen::Index base,
@@ -148,8 +148,8 @@ EffectSearch::EffectSearch(const WhitenedSystem& scores, Eigen::Index base,
   scale_ = inverse_lengths(scores.information);
   const Eigen::MatrixXd after = products_after(scores.information, base);
   const Eigen::VectorXd scale = scale_.tail(tested);
-  left_ = scale.asDiagonal() * after.topLeftCorner(tested, tested) * scale.asDiagonal();
-  left_score_ = scale.cwiseProduct(after.col(tested).head(tested));
+  scaled_information_ = scale.asDiagonal() * after.topLeftCorner(tested, tested) * scale.asDiagonal();
+  scaled_score_ = scale.cwiseProduct(after.col(tested).head(tested));
   squares_ = after(tested, tested);
 
   // Imitation by the base does not depend on drift: likely drift hides slow columns but does not remove them.
@@ -160,14 +160,15 @@ EffectSearch::EffectSearch(const WhitenedSystem& scores, Eigen::Index base,
 
   Eigen::Index width = 0;
   for (const ColumnGroup& group : groups) {
-    const Eigen::MatrixXd own = left_.block(group.first, group.first, group.count, group.count);
-    const Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
-    remaining_.push_back(group.count == 0 ? 0.0 : std::clamp(left.diagonal().maxCoeff(), 0.0, 1.0));
-    const std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back(identifiable_of(left));
+    const Eigen::MatrixXd information =
+        scaled_information_.block(group.first, group.first, group.count, group.count);
+    const Eigen::MatrixXd plain = plain_after.block(group.first, group.first, group.count, group.count);
+    remaining_.push_back(group.count == 0 ? 0.0 : std::clamp(plain.diagonal().maxCoeff(), 0.0, 1.0));
+    const std::vector<Eigen::Index>& identifiable = identifiable_.emplace_back(identifiable_of(plain));
     const Eigen::Index kept = as_index(identifiable.size());
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {
-      const SymmetricEigen solver(own(identifiable, identifiable));
+      const SymmetricEigen solver(information(identifiable, identifiable));
       // The symmetric root, unlike eigenvectors, is not moved by rounding errors.
       turned(identifiable, Eigen::all) =
           solver.eigenvectors() *
@@ -185,16 +186,16 @@ EffectSearch::EffectSearch(const WhitenedSystem& scores, Eigen::Index base,
   for (std::size_t g = 0; g < groups.size(); ++g) {
     turn.block(groups[g].first, begin_[g], groups[g].count, turned_[g].cols()) = turned_[g];
   }
-  information_ = turn.transpose() * left_ * turn;
-  score_ = turn.transpose() * left_score_;
+  information_ = turn.transpose() * scaled_information_ * turn;
+  score_ = turn.transpose() * scaled_score_;
 }
 
 double EffectSearch::remaining(std::size_t group, const Eigen::VectorXd& coefficients) const {
-  const std::vector<Eigen::Index> own = indices_of(groups_[group], base_);
-  const double whole = coefficients.dot(scores_->plain(own, own) * coefficients);
+  const std::vector<Eigen::Index> indices = indices_of(groups_[group], base_);
+  const double whole = coefficients.dot(scores_->plain(indices, indices) * coefficients);
   if (!(whole > 0.0)) return 0.0;
   return std::min(
-      1.0, distinct_squares(scores_->plain, indices_of({}, groups_, base_), own, coefficients) / whole);
+      1.0, distinct_squares(scores_->plain, indices_of({}, groups_, base_), indices, coefficients) / whole);
 }
 
 std::vector<Eigen::Index> EffectSearch::shapes_of(const std::vector<std::size_t>& set) const {
@@ -216,15 +217,15 @@ EffectSearch::Conditional EffectSearch::given(const std::vector<std::size_t>& gr
   }
   const std::size_t count = indices.size();
   const std::vector<Eigen::Index> shapes = shapes_of(groups);
-  const Eigen::Index turned = information_.cols() - (left_.cols() - candidates_);
+  const Eigen::Index turned = information_.cols() - (scaled_information_.cols() - candidates_);
   for (const Eigen::Index shape : shapes) indices.push_back(turned + shape - candidates_);
   if (!indices.empty()) {
-    Eigen::MatrixXd own = information_(indices, indices);
+    Eigen::MatrixXd information = information_(indices, indices);
     for (std::size_t k = 0; k < shapes.size(); ++k) {
       const double scale = scale_[base_ + shapes[k]];
-      own(as_index(count + k), as_index(count + k)) += scale * scale;
+      information(as_index(count + k), as_index(count + k)) += scale * scale;
     }
-    const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
+    const Eigen::MatrixXd inverse = pseudo_inverse(information, redundant_below);
     const Eigen::MatrixXd across = information_(Eigen::all, indices);
     const Eigen::MatrixXd solution = inverse * across.transpose();
     const Eigen::VectorXd score = score_(indices);
@@ -246,11 +247,11 @@ GroupScore EffectSearch::score_in(const Conditional& conditional, std::size_t gr
   result.estimate = Eigen::VectorXd::Zero(columns.count);
   result.covariance = Eigen::MatrixXd::Zero(columns.count, columns.count);
   if (count == 0 || !(conditional.variance > 0.0)) return result;
-  const Eigen::MatrixXd own = conditional.information.block(begin, begin, count, count);
-  for (const double value : symmetric_eigenvalues(own))
+  const Eigen::MatrixXd information = conditional.information.block(begin, begin, count, count);
+  for (const double value : symmetric_eigenvalues(information))
     result.degrees_of_freedom += value > redundant_below ? 1.0 : 0.0;
   if (result.degrees_of_freedom == 0.0) return result;
-  const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
+  const Eigen::MatrixXd inverse = pseudo_inverse(information, redundant_below);
   const Eigen::VectorXd score = conditional.score.segment(begin, count);
   result.chi2 = score.dot(inverse * score) / conditional.variance;
   result.chi2_one_dof = chi2_one_dof(result.chi2, result.degrees_of_freedom);
@@ -313,19 +314,19 @@ double EffectSearch::threshold_of(const Conditional& conditional, const std::vec
   return maxima[static_cast<std::size_t>(position)];
 }
 
-std::vector<Eigen::VectorXd> EffectSearch::leftover_rows(std::size_t group,
-                                                         const std::vector<std::size_t>& others) const {
+std::vector<Eigen::VectorXd> EffectSearch::rows_after(std::size_t group,
+                                                      const std::vector<std::size_t>& others) const {
   const Eigen::Index columns = scores_->columns();
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // weights of the unscaled columns
-  const ColumnGroup& own = groups_[group];
+  const ColumnGroup& group_columns = groups_[group];
   GroupScore found = score(group, others);
   if (found.estimate.isZero()) {
     const Eigen::Index kept = turned_[group].cols();
     if (kept > 0)
-      found.estimate =
-          scale_.segment(base_ + own.first, own.count).asDiagonal() * turned_[group].col(kept - 1);
+      found.estimate = scale_.segment(base_ + group_columns.first, group_columns.count).asDiagonal() *
+                       turned_[group].col(kept - 1);
   }
-  weight.segment(base_ + own.first, own.count) = found.estimate;
+  weight.segment(base_ + group_columns.first, group_columns.count) = found.estimate;
   const std::vector<Eigen::Index> rest = indices_of(set_without(others, group), groups_, base_);
   const Eigen::VectorXd imitated = scores_->information(rest, Eigen::all).leftCols(columns) * weight;
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
@@ -338,7 +339,7 @@ std::vector<Eigen::VectorXd> EffectSearch::leftover_rows(std::size_t group,
 
 double EffectSearch::level(std::size_t winner, const std::vector<std::size_t>& chosen,
                            double threshold) const {
-  const std::vector<Eigen::VectorXd> rows = leftover_rows(winner, chosen);
+  const std::vector<Eigen::VectorXd> rows = rows_after(winner, chosen);
   const Eigen::VectorXd information =
       scores_->by_minutes([&rows](std::size_t f) { return rows[f].cwiseAbs2(); });
   const double squares = information.squaredNorm();
@@ -346,9 +347,9 @@ double EffectSearch::level(std::size_t winner, const std::vector<std::size_t>& c
   if (blocks < enough_blocks) return threshold * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
   // Noise in the score of the group by minutes: the remainder after its effect is subtracted.
   const std::vector<std::size_t> with = set_with(chosen, winner);
-  const std::vector<Eigen::VectorXd> left_with = left(with);
+  const std::vector<Eigen::VectorXd> residuals = residuals_after(with);
   const Eigen::VectorXd sums =
-      scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(left_with[f]); });
+      scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(residuals[f]); });
   const auto whole =
       scores_->partition.all_reduce_flights<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
   const Eigen::VectorXd noise = sums / std::sqrt(whole);
@@ -356,10 +357,10 @@ double EffectSearch::level(std::size_t winner, const std::vector<std::size_t>& c
   return threshold * std::max(1.0, noise.squaredNorm() / variance(with));
 }
 
-std::vector<Eigen::VectorXd> EffectSearch::left(const std::vector<std::size_t>& chosen) const {
+std::vector<Eigen::VectorXd> EffectSearch::residuals_after(const std::vector<std::size_t>& chosen) const {
   Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
   coefficients(indices_of(chosen, groups_, base_)) = fit(chosen).estimate;
-  return scores_->left(coefficients);
+  return scores_->residuals_after(coefficients);
 }
 
 bool EffectSearch::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
@@ -390,9 +391,10 @@ Eigen::VectorXd EffectSearch::precision_of(std::size_t group, double times) cons
 double EffectSearch::log_ratio(const std::vector<Eigen::Index>& columns,
                                const Eigen::VectorXd& precision) const {
   const Eigen::VectorXd deviation = precision.cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inner = deviation.asDiagonal() * left_(columns, columns) * deviation.asDiagonal();
+  const Eigen::MatrixXd inner =
+      deviation.asDiagonal() * scaled_information_(columns, columns) * deviation.asDiagonal();
   const Cholesky factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
-  const Eigen::VectorXd right = deviation.cwiseProduct(left_score_(columns));
+  const Eigen::VectorXd right = deviation.cwiseProduct(scaled_score_(columns));
   const double explained = right.dot(factor.solve(right));
   const double degrees_of_freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_);
   return -0.5 * degrees_of_freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) -
@@ -411,7 +413,7 @@ double EffectSearch::evidence(const std::vector<std::size_t>& set,
   const std::vector<Eigen::Index> shapes = shapes_of(uncertain);
   columns.insert(columns.end(), shapes.begin(), shapes.end());
   // The precision of the shapes; `choose` sets the precision of the effects.
-  Eigen::VectorXd precision = scale_.tail(left_.cols())(columns).cwiseAbs2().cwiseMax(1e-300);
+  Eigen::VectorXd precision = scale_.tail(scaled_information_.cols())(columns).cwiseAbs2().cwiseMax(1e-300);
   const auto choose = [&](std::size_t i, const Tail& tail) {
     precision.segment(begin[i], as_index(identifiable_[set[i]].size())) =
         precision_of(set[i], tail.times)(identifiable_[set[i]]);
@@ -484,7 +486,7 @@ std::vector<std::size_t>::iterator EffectSearch::first_error_of_linearity(
       references.empty() ? 1 : as_index(*std::max_element(references.begin(), references.end())) + 1;
   std::vector<Eigen::VectorXd> squares;  // sums of each effect against each reference
   for (const std::size_t group : chosen) {
-    const std::vector<Eigen::VectorXd> rows = leftover_rows(group, chosen);
+    const std::vector<Eigen::VectorXd> rows = rows_after(group, chosen);
     squares.push_back(scores_->partition.all_reduce_flights<Eigen::VectorXd>([&](std::size_t f) {
       Eigen::VectorXd of_flight = Eigen::VectorXd::Zero(count);
       of_flight[references.empty() ? 0 : as_index(references[f])] = rows[f].squaredNorm();

@@ -50,10 +50,10 @@ std::vector<Eigen::Index> indices_of(const ColumnGroup& group, Eigen::Index base
 std::vector<Eigen::Index> indices_of(const std::vector<std::size_t>& some,
                                      const std::vector<ColumnGroup>& groups, Eigen::Index base);
 
-/// Squares of the columns `own` with these coefficients after the columns `rest`.
+/// Squares of `columns` with these coefficients after the columns `rest`.
 /// @param information products of all columns with each other
 double distinct_squares(const Eigen::MatrixXd& information, const std::vector<Eigen::Index>& rest,
-                        const std::vector<Eigen::Index>& own, const Eigen::VectorXd& coefficients);
+                        const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& coefficients);
 
 /// Seed of the random draws of a diagnosis, which set its thresholds.
 inline constexpr std::uint64_t random_seed = 20120106;
@@ -140,11 +140,11 @@ class EffectSearch {
   double variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }
 
   /// Whitened residuals of each local flight after a fit of base and `chosen`.
-  std::vector<Eigen::VectorXd> left(const std::vector<std::size_t>& chosen) const;
+  std::vector<Eigen::VectorXd> residuals_after(const std::vector<std::size_t>& chosen) const;
 
   /// Rows of a group's best direction after base and others, for each local flight: the location of its
   /// evidence.
-  std::vector<Eigen::VectorXd> leftover_rows(std::size_t group, const std::vector<std::size_t>& others) const;
+  std::vector<Eigen::VectorXd> rows_after(std::size_t group, const std::vector<std::size_t>& others) const;
 
  private:
   struct Conditional {
@@ -189,8 +189,8 @@ class EffectSearch {
   std::vector<std::vector<Eigen::Index>> identifiable_;
   std::vector<Eigen::MatrixXd> turned_;  // scaled columns of a group to its directions
   std::vector<Eigen::Index> begin_;      // first turned column of each group
-  Eigen::MatrixXd left_;                 // information of scaled candidates after the base
-  Eigen::VectorXd left_score_;
+  Eigen::MatrixXd scaled_information_;   // information of scaled candidates after the base
+  Eigen::VectorXd scaled_score_;
   Eigen::Index candidates_ = 0;  // columns of all groups; columns of shapes follow
   Eigen::MatrixXd information_;  // information of turned columns after the base
   Eigen::VectorXd score_;

@@ -162,7 +162,7 @@ ColumnFit fit_of(const WhiteRows& white, const GpsPrior& prior) {
 }
 
 /// Whitened residual after the fit of columns with these coefficients.
-Eigen::VectorXd left_of(const WhiteRows& white, const Eigen::VectorXd& coefficients) {
+Eigen::VectorXd residuals_of(const WhiteRows& white, const Eigen::VectorXd& coefficients) {
   const Eigen::Index count = coefficients.size();
   return white.rows.col(count) - white.rows.leftCols(count) * coefficients;
 }
@@ -206,18 +206,18 @@ Slope slope_at(const Trial& trial, const GpsRows& rows, const Eigen::VectorXd& m
   constexpr double step = 1e-3;
   const Eigen::Index count = trial.logarithms.size();
   const Eigen::ArrayXd variances = trial.log_variances();
-  const Eigen::VectorXd left = left_of(trial.white, trial.coefficients);
+  const Eigen::VectorXd residuals = residuals_of(trial.white, trial.coefficients);
   Slope slope{Eigen::VectorXd(count), {}};
-  Eigen::MatrixXd by_variance(left.size(), count);
-  Eigen::MatrixXd by_mean(left.size(), count);  // innovations in units of their deviation
+  Eigen::MatrixXd by_variance(residuals.size(), count);
+  Eigen::MatrixXd by_mean(residuals.size(), count);  // innovations in units of their deviation
   for (Eigen::Index k = 0; k < count; ++k) {
     Eigen::VectorXd moved = trial.logarithms;
     moved[k] += step;
     const Trial beside = trial_at(moved, rows, more, prior);
     slope.gradient[k] = (beside.cost - trial.cost) / step;
     by_variance.col(k) = (beside.log_variances() - variances) / step;
-    by_mean.col(k) = (left_of(beside.white, trial.coefficients) - left) / step +
-                     0.5 * left.cwiseProduct(by_variance.col(k));
+    by_mean.col(k) = (residuals_of(beside.white, trial.coefficients) - residuals) / step +
+                     0.5 * residuals.cwiseProduct(by_variance.col(k));
   }
   slope.information = 0.5 * by_variance.transpose() * by_variance + by_mean.transpose() * by_mean;
   for (Eigen::Index k = 0; k < count; ++k)
@@ -272,7 +272,7 @@ void widen(GpsPrior& prior, const WhiteRows& white) {
 bool find_outliers(const WhiteRows& white, const GpsPrior& prior, Eigen::VectorXd& more) {
   constexpr double limit = 4.5;
   constexpr double wider = 100.0;
-  const Eigen::VectorXd news = left_of(white, fit_of(white, prior).coefficients);
+  const Eigen::VectorXd news = residuals_of(white, fit_of(white, prior).coefficients);
   bool any = false;
   for (Eigen::Index i = 0; i < news.size(); ++i) {
     if (!(std::abs(news[i]) > limit)) continue;

@@ -103,10 +103,10 @@ Series without_noise(const Series& values, double step) {
   constexpr int rounds = 6;
   Series smooth(values.size(), 0.0);
   for (int round = 0; round < rounds; ++round) {
-    Series left = values;
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] -= smooth[i];
-    left = low_passed(left, deviation / step);
-    for (std::size_t i = 0; i < left.size(); ++i) smooth[i] += left[i];
+    Series residual = values;
+    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= smooth[i];
+    residual = low_passed(residual, deviation / step);
+    for (std::size_t i = 0; i < residual.size(); ++i) smooth[i] += residual[i];
   }
   return smooth;
 }
@@ -178,11 +178,11 @@ class Differentiation {
       : law_(file, inputs), parameters_(parameters), requested_(requested), at_location_(effects.at) {
     requested_.insert(requested_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
     for (std::size_t& location : at_location_) location += requested.size();
-    own_ = as_index(requested.size());
+    law_columns_ = as_index(requested.size());
     if (!at_location_.empty()) amounts_ = effects.amounts(inputs);
   }
 
-  Eigen::Index count() const { return own_ + as_index(at_location_.size()); }
+  Eigen::Index count() const { return law_columns_ + as_index(at_location_.size()); }
 
   Derivatives operator()(std::size_t sample) const {
     Derivatives at;
@@ -204,10 +204,10 @@ class Differentiation {
       }
     }
     Derivatives all(at.rows(), count());
-    all.leftCols(own_) = at.leftCols(own_);
-    for (Eigen::Index c = own_; c < count(); ++c)
-      all.col(c) = at.col(as_index(at_location_[static_cast<std::size_t>(c - own_)])) *
-                   amounts_(as_index(sample), c - own_);
+    all.leftCols(law_columns_) = at.leftCols(law_columns_);
+    for (Eigen::Index c = law_columns_; c < count(); ++c)
+      all.col(c) = at.col(as_index(at_location_[static_cast<std::size_t>(c - law_columns_)])) *
+                   amounts_(as_index(sample), c - law_columns_);
     return all;
   }
 
@@ -216,7 +216,7 @@ class Differentiation {
   const double* parameters_;
   std::vector<std::size_t> requested_;    // including the amounts at the locations of effects
   std::vector<std::size_t> at_location_;  // index of the location of each coefficient of the effects
-  Eigen::Index own_ = 0;
+  Eigen::Index law_columns_ = 0;
   Eigen::MatrixXd amounts_{};
 };
 
@@ -362,16 +362,16 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
   const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
   const Differentiation differentiate(file, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
-  const Eigen::Index own = as_index(requested.size());
+  const Eigen::Index law_columns = as_index(requested.size());
   const Eigen::Index records = as_index(size);
   result.rows = RowByRow::Constant(2 * records, count + gps_nuisance_count + 1, nan);
-  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
+  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), law_columns);
   Eigen::Index number = 0;
   for (const std::size_t i : used) {
     if (std::isnan(wind.east[i] + wind.north[i])) continue;
     const Derivatives by = differentiate(i);
     if (!by.row(of_airspeed).allFinite()) continue;
-    result.defect.row(number++) = by.row(of_pressure).head(own);
+    result.defect.row(number++) = by.row(of_pressure).head(law_columns);
     const double speed = airspeed[i];
     const double sine = std::sin(calm_course[i] * radians_per_degree);
     const double cosine = std::cos(calm_course[i] * radians_per_degree);
@@ -412,7 +412,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
     fill(as_index(i), sine, cosine, shear_east, calm_ground_east, wind.east[i]);
     fill(records + as_index(i), cosine, -sine, shear_north, calm_ground_north, wind.north[i]);
   }
-  result.defect.conservativeResize(number, own);
+  result.defect.conservativeResize(number, law_columns);
   return result;
 }
 
@@ -444,10 +444,10 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
   }
   const Differentiation differentiate(file, calm, parameters, requested, effects);
   const Eigen::Index count = differentiate.count();
-  const Eigen::Index own = as_index(requested.size());
+  const Eigen::Index law_columns = as_index(requested.size());
   const Eigen::Index columns = count + gps_nuisance_count;
   result.rows = RowByRow::Constant(as_index(size), columns + 1, nan);
-  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), own);
+  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), law_columns);
   std::vector<bool> takes_part(size, false);
   for (const std::size_t i : used) takes_part[i] = true;
 
@@ -497,9 +497,9 @@ GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
         row[count + isobar_north] = to_north;
       }
     }
-    result.defect.row(number++) = by.row(of_pressure).head(own);
+    result.defect.row(number++) = by.row(of_pressure).head(law_columns);
   }
-  result.defect.conservativeResize(number, own);
+  result.defect.conservativeResize(number, law_columns);
   return result;
 }
 

@@ -14,7 +14,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr Eigen::Index own_nuisances = gps_nuisance_count - gps_shared_nuisances;
+constexpr Eigen::Index flight_nuisances = gps_nuisance_count - gps_shared_nuisances;
 
 /// The same rows without the columns of effects.
 GpsRows without_effects(const GpsRows& rows, Eigen::Index law) {
@@ -26,15 +26,16 @@ GpsRows without_effects(const GpsRows& rows, Eigen::Index law) {
 
 /// Subtracts the best fit of the nuisances of the flight, and appends the rows of their prior.
 /// @param white nuisances in units of their priors
-Eigen::MatrixXd eliminate_own(const Eigen::MatrixXd& white) {
-  const Eigen::Index kept = white.cols() - 1 - own_nuisances;
+Eigen::MatrixXd eliminate_flight_nuisances(const Eigen::MatrixXd& white) {
+  const Eigen::Index kept = white.cols() - 1 - flight_nuisances;
   const Eigen::Index size = white.rows();
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(size + own_nuisances, own_nuisances);
-  own.topRows(size) = white.middleCols(kept, own_nuisances);
-  own.bottomRows(own_nuisances).setIdentity();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size + own_nuisances, kept + 1);
+  Eigen::MatrixXd nuisances = Eigen::MatrixXd::Zero(size + flight_nuisances, flight_nuisances);
+  nuisances.topRows(size) = white.middleCols(kept, flight_nuisances);
+  nuisances.bottomRows(flight_nuisances).setIdentity();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size + flight_nuisances, kept + 1);
   rows.topRows(size) << white.leftCols(kept), white.rightCols(1);
-  rows.noalias() -= own * symmetric_solution(own.transpose() * own, Eigen::MatrixXd(own.transpose() * rows));
+  rows.noalias() -= nuisances * symmetric_solution(nuisances.transpose() * nuisances,
+                                                   Eigen::MatrixXd(nuisances.transpose() * rows));
   return rows;
 }
 
@@ -56,12 +57,13 @@ GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
   for (Eigen::Index k = 0; k < law; ++k)
     prior.deviation[k] = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];
   prior.deviation.tail(gps_nuisance_count) = gps_nuisance_deviations();
-  const GpsRows own = without_effects(rows, law);
+  const GpsRows law_rows = without_effects(rows, law);
   Eigen::VectorXd outliers = Eigen::VectorXd::Zero(rows.rows.rows());
   GpsNoise noise(rows.kind);
-  widen(prior, noise.white(own, outliers));
-  noise.maximise(own, outliers, prior);
-  if (find_outliers(noise.white(own, outliers), prior, outliers)) noise.maximise(own, outliers, prior);
+  widen(prior, noise.white(law_rows, outliers));
+  noise.maximise(law_rows, outliers, prior);
+  if (find_outliers(noise.white(law_rows, outliers), prior, outliers))
+    noise.maximise(law_rows, outliers, prior);
   WhiteRows white = noise.white(rows, outliers);
   std::vector<Eigen::Index> with_value;
   for (Eigen::Index row = 0; row < white.rows.rows(); ++row) {
@@ -73,7 +75,7 @@ GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
   const Eigen::Index nuisances = white.rows.cols() - 1 - gps_nuisance_count;
   for (Eigen::Index n = 0; n < gps_nuisance_count; ++n)
     white.rows.col(nuisances + n) *= prior.deviation[law + n];
-  system.rows = eliminate_own(white.rows(with_value, Eigen::all)).cast<float>();
+  system.rows = eliminate_flight_nuisances(white.rows(with_value, Eigen::all)).cast<float>();
   system.record.resize(static_cast<std::size_t>(system.rows.rows()), system.record.front());
   return system;
 }
@@ -143,10 +145,10 @@ std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSam
       products.emplace_back();
       continue;
     }
-    Eigen::MatrixXd own(rows.rows(), gps_shared_nuisances + 3);
-    own << rows.middleCols(rows.cols() - 1 - gps_shared_nuisances, gps_shared_nuisances), of_parts.col(0),
+    Eigen::MatrixXd columns(rows.rows(), gps_shared_nuisances + 3);
+    columns << rows.middleCols(rows.cols() - 1 - gps_shared_nuisances, gps_shared_nuisances), of_parts.col(0),
         of_parts.col(part), rows.rightCols(1);
-    products.emplace_back(own.transpose() * own);
+    products.emplace_back(columns.transpose() * columns);
   }
   return products;
 }

@@ -12,11 +12,11 @@ namespace {
 
 /// Excludes the samples that depend on excluded neighbours.
 void mask_by_neighbours(std::vector<Mask>& masks, std::size_t half_width) {
-  const std::vector<Mask> own = masks;
-  for (std::size_t i = 0; i < own.size(); ++i) {
+  const std::vector<Mask> initial = masks;
+  for (std::size_t i = 0; i < initial.size(); ++i) {
     // If only the residual is missing, its inputs are present.
-    if (own[i] == Mask::none || own[i] == Mask::reference) continue;
-    for (std::size_t k = i - std::min(i, half_width); k < std::min(i + half_width + 1, own.size()); ++k) {
+    if (initial[i] == Mask::none || initial[i] == Mask::reference) continue;
+    for (std::size_t k = i - std::min(i, half_width); k < std::min(i + half_width + 1, initial.size()); ++k) {
       if (masks[k] == Mask::none) masks[k] = Mask::reference;
     }
   }

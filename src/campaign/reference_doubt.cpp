@@ -21,7 +21,7 @@ struct NamedDoubts {
 };
 
 /// Calibration uncertainties of the sensors of the model, of its laser, and of a measured pressure.
-NamedDoubts own_doubts(const ModelDefinition& model, const Reference& reference) {
+NamedDoubts model_doubts(const ModelDefinition& model, const Reference& reference) {
   NamedDoubts doubts;
   if (reference.reads_laser()) doubts.add(doubts_of(model, laser_calibration));
   // A measured pressure has no model. An error of the static transducer of the model changes the residual by
@@ -98,7 +98,7 @@ ReferenceDoubt::ReferenceDoubt(const ModelDefinition& model, const Reference& re
   if (with_law && reference.model() != nullptr) law_root_ = root_of_law(*reference.model());
   if (trusted && law_root_.cols() == 0) return;
   NamedDoubts doubts;
-  if (!trusted) doubts = own_doubts(model, reference);
+  if (!trusted) doubts = model_doubts(model, reference);
   model_ = with_doubts(model, doubts.sensors);
   for (const SensorDoubt& each : doubts.sensors) indices_.push_back(position_of(model_, each));
   if (reference.model() != nullptr) {

@@ -29,8 +29,8 @@ ModelDefinition resolve_model(const ModelDefinition& open, const FlightSet& flig
   const auto choices = flights.partition().all_gather_flights<Choice>([&](std::size_t number) {
     try {
       Notes unsaid;
-      const ModelDefinition own = resolve_variables(open, flights[number], unsaid);
-      return Choice(std::in_place, own.variables, own.model.moist);
+      const ModelDefinition resolved = resolve_variables(open, flights[number], unsaid);
+      return Choice(std::in_place, resolved.variables, resolved.model.moist);
     } catch (const Error&) {
       // The caller decides whether a flight may be skipped.
       return Choice{};

@@ -71,26 +71,26 @@ std::vector<NoiseModel> noise_of_flights(const FlightPartition& partition, const
     const std::vector<std::size_t> few = few_of(flights.outlines, first, last);
     const auto rows_of = partition.of_entries(few).all_gather_flights<BinnedRows>(
         [&](std::size_t k) {
-          return BinnedRows{flights.bins[few[k]], side_by_side(fit.columns(few[k]), fit.left(few[k]))};
+          return BinnedRows{flights.bins[few[k]], side_by_side(fit.columns(few[k]), fit.residual(few[k]))};
         },
         fit.state);
     std::vector<Binning> bins;
     std::vector<Eigen::MatrixXd> columns;
-    std::vector<Eigen::VectorXd> left;
+    std::vector<Eigen::VectorXd> residuals;
     const std::vector<Eigen::Index> seen = columns_seen(rows_of);
-    for (const auto& [own, rows] : rows_of) {
-      bins.push_back(own);
+    for (const auto& [binning, rows] : rows_of) {
+      bins.push_back(binning);
       columns.emplace_back(rows(Eigen::all, seen));
-      left.emplace_back(rows.rightCols(1));
+      residuals.emplace_back(rows.rightCols(1));
     }
-    NoiseModel shared = find(bins, columns, left);
+    NoiseModel shared = find(bins, columns, residuals);
     shared.level.clear();
     for (; first < last; ++first) {
       noise[first] = shared;
       noise[first].level.resize(1);
       if (!partition.is_local(first)) continue;
-      const Binning& own = flights.bins[first];
-      noise[first].level[0] = noise_levels(own, fit.left(first), shared);
+      const Binning& binning = flights.bins[first];
+      noise[first].level[0] = noise_levels(binning, fit.residual(first), shared);
     }
   }
   return noise;
@@ -144,7 +144,7 @@ PartialSums& PartialSums::operator+=(const PartialSums& other) {
   return *this;
 }
 
-std::vector<Eigen::VectorXd> WhitenedSystem::left(const Eigen::VectorXd& coefficients) const {
+std::vector<Eigen::VectorXd> WhitenedSystem::residuals_after(const Eigen::VectorXd& coefficients) const {
   std::vector<Eigen::VectorXd> result(rows.size());
   for (std::size_t f = 0; f < rows.size(); ++f) {
     if (partition.is_local(f))

@@ -20,7 +20,7 @@ struct BinnedFit {
   /// Columns fitted to a flight of this rank.
   std::function<Eigen::MatrixXd(std::size_t flight)> columns;
   /// Residual after the fit, hPa.
-  std::function<Eigen::VectorXd(std::size_t flight)> left;
+  std::function<Eigen::VectorXd(std::size_t flight)> residual;
   /// Digest of the parameters of the fit, on which the ranks must agree.
   std::uint64_t state = 0;
 };
@@ -28,7 +28,7 @@ struct BinnedFit {
 /// @param columns those that are not zero in all flights
 using FindNoise =
     std::function<NoiseModel(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                             const std::vector<Eigen::VectorXd>& left)>;
+                             const std::vector<Eigen::VectorXd>& residuals)>;
 
 /// Noise of each flight, separate for each reference. The common part is found from a few flights by `find`;
 /// the level of a flight follows from the common part and its residual.
@@ -90,7 +90,7 @@ struct WhitenedSystem {
   }
 
   /// Whitened residuals of each flight of this process after the columns with these coefficients.
-  std::vector<Eigen::VectorXd> left(const Eigen::VectorXd& coefficients) const;
+  std::vector<Eigen::VectorXd> residuals_after(const Eigen::VectorXd& coefficients) const;
 
   /// Sums over the minutes of all flights of a value of each row. @param of_rows gives these values for a
   /// flight of this process

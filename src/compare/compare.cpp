@@ -221,7 +221,7 @@ void add_variances(std::size_t model, const FlightPartition& partition,
   const double mean = all.statistics().mean;
   BinnedFit fit;
   fit.columns = [&](std::size_t f) { return Eigen::MatrixXd::Ones(flights.residuals[f].size(), 1); };
-  fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
+  fit.residual = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
   const std::vector<NoiseModel> noise = noise_of_flights(
       partition, flights, fit, [&partition](const auto& bins, const auto& columns, const auto& residuals) {
         constexpr std::size_t enough = 6;

@@ -119,17 +119,18 @@ double Analysis::variance_factor_with(const std::vector<std::size_t>& chosen) co
 
   using Halves = std::array<Eigen::MatrixXd, 2>;
   const auto halves = partition_.all_gather_flights<Halves>([&](std::size_t f) {
-    Halves own;
-    own.fill(Eigen::MatrixXd::Zero(count + 1, count + 1));
-    if (flight(f).gps.rows.size() == 0) return own;
+    Halves of_flight;
+    of_flight.fill(Eigen::MatrixXd::Zero(count + 1, count + 1));
+    if (flight(f).gps.rows.size() == 0) return of_flight;
     const std::vector<double>& time = binned_.bins[f].time();
     const double middle = 0.5 * (time.front() + time.back());
     const Eigen::MatrixXd rows = system.rows[f](Eigen::all, columns);
     std::array<std::vector<Eigen::Index>, 2> numbers;
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
       numbers[time[static_cast<std::size_t>(system.bin_of(f, i))] < middle ? 0 : 1].push_back(i);
-    for (std::size_t half = 0; half < 2; ++half) own[half] = products_of(rows(numbers[half], Eigen::all));
-    return own;
+    for (std::size_t half = 0; half < 2; ++half)
+      of_flight[half] = products_of(rows(numbers[half], Eigen::all));
+    return of_flight;
   });
   std::vector<InformationPart> parts;
   std::map<std::size_t, Eigen::MatrixXd> references;
@@ -200,9 +201,9 @@ std::vector<double> Analysis::added(std::size_t flight, const Eigen::VectorXd& c
 
 std::vector<double> Analysis::added_by(std::size_t flight, std::size_t group,
                                        const Eigen::VectorXd& coefficients) const {
-  const std::vector<Eigen::Index> own = internal::indices_of(groups_[group], base_);
+  const std::vector<Eigen::Index> indices = internal::indices_of(groups_[group], base_);
   Eigen::VectorXd alone = Eigen::VectorXd::Zero(coefficients.size());
-  alone(own) = coefficients(own);
+  alone(indices) = coefficients(indices);
   return added(flight, alone);
 }
 
@@ -226,7 +227,8 @@ std::vector<NoiseModel> Analysis::noise_after(const std::vector<std::size_t>& gr
   return noise_of_flights(
       partition_, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, indices); },
-       [&](std::size_t f) { return left_of(f, coefficients); }, digest_of(serialized(coefficients))},
+       [&](std::size_t f) { return binned_residual_after(f, coefficients); },
+       digest_of(serialized(coefficients))},
       find);
 }
 
@@ -264,9 +266,9 @@ NoiseModel Analysis::noise_beside_offsets() const {
                     std::vector<Eigen::VectorXd> about_means = residuals;
                     const Eigen::Index offsets = as_index(bins.size()) - 1;
                     for (std::size_t f = 0; f < bins.size(); ++f) {
-                      Eigen::MatrixXd own = Eigen::MatrixXd::Zero(columns[f].rows(), offsets);
-                      if (f > 0) own.col(as_index(f) - 1).setOnes();
-                      with_offsets[f] = side_by_side(columns[f], own);
+                      Eigen::MatrixXd indicators = Eigen::MatrixXd::Zero(columns[f].rows(), offsets);
+                      if (f > 0) indicators.col(as_index(f) - 1).setOnes();
+                      with_offsets[f] = side_by_side(columns[f], indicators);
                       if (residuals[f].size() > 0) about_means[f].array() -= residuals[f].mean();
                     }
                     return extrapolate_drift(
@@ -306,12 +308,12 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns,
   std::vector<Eigen::MatrixXd> all;
   std::vector<WhiteFlight> white(columns.size());
   for (std::size_t f = 0; f < columns.size(); ++f) {
-    const Eigen::Index own = columns[f].cols() + uncertainty_[f].cols();
-    Eigen::MatrixXd& both = all.emplace_back(Eigen::MatrixXd::Zero(columns[f].rows(), own + nuisances_));
-    both.leftCols(own) << columns[f], uncertainty_[f];
+    const Eigen::Index count = columns[f].cols() + uncertainty_[f].cols();
+    Eigen::MatrixXd& both = all.emplace_back(Eigen::MatrixXd::Zero(columns[f].rows(), count + nuisances_));
+    both.leftCols(count) << columns[f], uncertainty_[f];
     const GpsSystem& gps = flight(f).gps;
     if (gps.rows.size() == 0) continue;
-    white[f].rows = Eigen::MatrixXd::Zero(gps.rows.rows(), own + nuisances_ + 1);
+    white[f].rows = Eigen::MatrixXd::Zero(gps.rows.rows(), count + nuisances_ + 1);
     white[f].rows.leftCols(as_index(of_gps.size())) = gps.rows(Eigen::all, of_gps).cast<double>();
     white[f].rows.rightCols(nuisances_ + 1) = gps.rows.rightCols(nuisances_ + 1).cast<double>();
     white[f].rows /= std::sqrt(variance_factor_);
@@ -349,12 +351,12 @@ void Analysis::find_search(const std::vector<std::size_t>& chosen) {
 
 void Analysis::take_out_common_noise(WhitenedSystem& scores) const {
   if (further_.empty()) return;
-  std::vector<Eigen::VectorXd> left = white_noise_;
+  std::vector<Eigen::VectorXd> noise = white_noise_;
   for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
     if (!partition_.is_local(later) || flight(later).is_by_gps) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       if (flight(earlier).file == flight(later).file)
-        internal::take_out_common_noise(binned_.bins, earlier, later, left, scores);
+        internal::take_out_common_noise(binned_.bins, earlier, later, noise, scores);
     }
   }
   sum_up(scores);
@@ -437,10 +439,10 @@ Eigen::VectorXd Analysis::least_squares(const std::vector<std::size_t>& groups) 
   const std::vector<Eigen::Index> indices = indices_of(groups);
   const auto sums = first_partition_.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const Eigen::MatrixXd rows = rows_of_refit(f, indices);
-    PartialSums own(1, rows.cols());
-    own.products[0] = rows.transpose() * rows;
-    own.counts[0] = static_cast<double>(rows.rows()) / (flight(f).is_by_gps ? variance_factor_ : 1.0);
-    return own;
+    PartialSums of_flight(1, rows.cols());
+    of_flight.products[0] = rows.transpose() * rows;
+    of_flight.counts[0] = static_cast<double>(rows.rows()) / (flight(f).is_by_gps ? variance_factor_ : 1.0);
+    return of_flight;
   });
   return coefficients(groups, solution(sums.products[0], sums.counts[0], groups));
 }
@@ -457,17 +459,17 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const auto sums = partition_.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const Eigen::MatrixXd all = rows_of_refit(f, indices);
     white[f] = flight(f).is_by_gps ? all : whitened(all, binned_.bins[f], noise_[f], 0);
-    PartialSums own(2 * held_out_parts, width);
+    PartialSums of_flight(2 * held_out_parts, width);
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const std::size_t part = part_of(f, i);
-      own.add(part, white[f].row(i).transpose());
+      of_flight.add(part, white[f].row(i).transpose());
       // A refit weighs each reference by its noise.
-      if (flight(f).reference == 0) own.add(part + held_out_parts, all.row(i).transpose());
+      if (flight(f).reference == 0) of_flight.add(part + held_out_parts, all.row(i).transpose());
     }
     if (flight(f).is_by_gps) {
-      for (double& count : own.counts) count /= variance_factor_;
+      for (double& count : of_flight.counts) count /= variance_factor_;
     }
-    return own;
+    return of_flight;
   });
   // Prediction of each part from a fit to the others.
   const auto estimates_from = [&](std::size_t first) {
@@ -494,8 +496,8 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     Eigen::VectorXd squares(white[f].rows());
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
       const Eigen::VectorXd& estimate = estimates[part_of(f, i)];
-      const double left = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
-      squares[i] = left * left;
+      const double residual = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
+      squares[i] = residual * residual;
     }
     return squares;
   });
@@ -523,7 +525,7 @@ std::vector<double> Analysis::drift(std::size_t flight, const Eigen::VectorXd& c
   std::vector<double> result(flights_[flight].given.size(), nan);
   const Binning& bins = binned_.bins[flight];
   const Whitening whitening(bins, noise_[flight], 0);
-  const Eigen::VectorXd series = whitening.slow_parts(left_of(flight, coefficients));
+  const Eigen::VectorXd series = whitening.slow_parts(binned_residual_after(flight, coefficients));
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;
 }

@@ -150,7 +150,7 @@ class Analysis {
   void take_out_common_noise(WhitenedSystem& scores) const;
 
   /// Residual of a flight after columns with these coefficients, in bins.
-  Eigen::VectorXd left_of(std::size_t flight, const Eigen::VectorXd& coefficients) const {
+  Eigen::VectorXd binned_residual_after(std::size_t flight, const Eigen::VectorXd& coefficients) const {
     return binned_.residuals[flight] - binned_.columns[flight] * coefficients;
   }
   /// Columns and residual of a flight as a refit has them: in bins, or the white rows of GPS.

@@ -139,7 +139,7 @@ bool is_of_laser(EffectLocation location) {
 }
 
 /// Whether an error at this location often occurs on both systems, because tubes and lines are built alike.
-bool is_built_alike(EffectLocation location) {
+bool is_often_shared(EffectLocation location) {
   return location == EffectLocation::static_line || location == EffectLocation::total_line ||
          location == EffectLocation::pitot;
 }
@@ -147,7 +147,7 @@ bool is_built_alike(EffectLocation location) {
 /// Whether an effect there can be one of the other system as well.
 bool has_a_twin(EffectLocation location) {
   return location == EffectLocation::static_transducer || location == EffectLocation::dynamic_transducer ||
-         location == EffectLocation::static_defect || is_built_alike(location);
+         location == EffectLocation::static_defect || is_often_shared(location);
 }
 
 /// Reason why an effect cannot be tested with a model; empty if it can. @param dates on which steps are tried
@@ -168,7 +168,7 @@ void add_derived_ones(CandidateSet& set, bool two_systems) {
   for (const Candidate& candidate : set.candidates) {
     all.push_back(candidate);
     if (candidate.effect.is_formula()) continue;
-    if (two_systems && is_built_alike(location_of(candidate.effect)))
+    if (two_systems && is_often_shared(location_of(candidate.effect)))
       add_variant(all, candidate).is_shared = true;
     const EffectInfo& info = *effect_named(candidate.effect.id);
     if (info.memory.of == Quantity::count) continue;

@@ -95,16 +95,17 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
 
 /// Model coefficients of least squares, as a refit has them, with the errors by the noise.
 /// @param refitted their change
-std::vector<CoefficientEstimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base,
-                                        const Eigen::VectorXd& refitted) {
+std::vector<CoefficientEstimate> refitted_coefficients(const Analysis& analysis,
+                                                       const std::vector<BaseCoefficient>& base,
+                                                       const Eigen::VectorXd& refitted) {
   const Eigen::MatrixXd covariance = analysis.search().fit({}).covariance;
-  std::vector<CoefficientEstimate> own;
+  std::vector<CoefficientEstimate> estimates;
   for (std::size_t b = 0; b < base.size(); ++b) {
     const Eigen::Index k = as_index(b);
-    own.push_back({base[b].name, base[b].unit, base[b].value + refitted[k],
-                   std::sqrt(std::max(0.0, covariance(k, k)))});
+    estimates.push_back({base[b].name, base[b].unit, base[b].value + refitted[k],
+                         std::sqrt(std::max(0.0, covariance(k, k)))});
   }
-  return own;
+  return estimates;
 }
 
 double noise_with_findings(const FlightPartition& partition, const std::vector<FlightDiagnosis>& flights) {
@@ -183,22 +184,22 @@ std::array<std::size_t, mask_count> count_masks(const PartitionedColumns& column
   using Counts = std::array<std::size_t, mask_count>;
   Counts all{};
   for (const Counts& part : columns.partition.all_gather_flights<Counts>([&columns](std::size_t f) {
-         Counts own{};
-         if (columns.flights[f].reference != 0) return own;
-         for (const Mask mask : columns.flights[f].mask) ++own[static_cast<std::size_t>(mask)];
-         return own;
+         Counts of_flight{};
+         if (columns.flights[f].reference != 0) return of_flight;
+         for (const Mask mask : columns.flights[f].mask) ++of_flight[static_cast<std::size_t>(mask)];
+         return of_flight;
        })) {
     for (std::size_t m = 0; m < mask_count; ++m) all[m] += part[m];
   }
   return all;
 }
 
-Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
+Verdict verdict_of(const Diagnosis& diagnosis, double explained, double remaining_chi2) {
   constexpr double notable = 0.03;  // fraction of the explained part
   if (diagnosis.findings.empty())
     return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::none_detected;
   const Unexplained& unexplained = diagnosis.unexplained;
-  if (unexplained.significant && (left > notable * explained || !unexplained.steps.empty()))
+  if (unexplained.significant && (remaining_chi2 > notable * explained || !unexplained.steps.empty()))
     return Verdict::partial;
   const bool alone =
       std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
@@ -280,14 +281,15 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.is_refitted = !gps_kind(first_of(references));
   const Eigen::VectorXd base = changes(analysis, {}, diagnosis.is_refitted);
-  diagnosis.own = own_of(analysis, set.base, base);
+  diagnosis.own = refitted_coefficients(analysis, set.base, base);
   diagnosis.flights =
       flights_of(analysis, base, changes(analysis, analysis.result().chosen, diagnosis.is_refitted));
   diagnosis.residual_rms = rms_of(
       analysis.partition(), [&](std::size_t f) -> const auto& { return diagnosis.flights[f].before; });
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
   diagnosis.noise_rms_with_findings = noise_with_findings(analysis.partition(), diagnosis.flights);
-  const double left = add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
+  const double remaining_chi2 =
+      add_unexplained(analysis, files, model, set.extended, references, options, diagnosis);
   if (!flaps.candidates.empty())
     diagnose_flaps(analysis, references, flaps, groups_of(set, flaps.candidates), diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
@@ -295,7 +297,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   doubt_by_size(diagnosis);
   if (diagnosis.is_refitted) doubt_by_refit(diagnosis);
-  diagnosis.verdict = verdict_of(diagnosis, explained, left);
+  diagnosis.verdict = verdict_of(diagnosis, explained, remaining_chi2);
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());

@@ -195,8 +195,8 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "pcor refit adds the misfit of the model and the calibration of the reference. The decrease of chi2 is "
       "in units of the noise with its drift: for one fitted coefficient, the square of its change over its "
       "error. The search gives less weight to slow changes, so its chi2 differs. ";
-  const auto own_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
-  if (std::any_of(panel.coefficients.begin(), own_end,
+  const auto model_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.own);
+  if (std::any_of(panel.coefficients.begin(), model_end,
                   [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); })) {
     panel.caption += " The coefficients of the reference system keep their input values.";
     panel.details +=
@@ -270,7 +270,7 @@ void DiagnosisPanels::add_info(const Diagnosis& diagnosis, const ModelDefinition
   for (const Note& note : diagnosis.notes) info.emplace_back(label_of(note), note.text);
 }
 
-void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::string& left) {
+void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::string& residual) {
   const Unexplained& unexplained = diagnosis.unexplained;
   if (!unexplained.significant) return;
   ReportText page{"Unexplained residual", unexplained_text(unexplained)};
@@ -288,21 +288,21 @@ void DiagnosisPanels::add_unexplained(const Diagnosis& diagnosis, const std::str
   if (add_column("drift", "slow drift", "hPa", diagnosis.flights, &FlightDiagnosis::drift))
     add(TimePanel{"Remaining residual and its slow drift",
                   "Drift: slow changes over many minutes.",
-                  {left, "drift"},
+                  {residual, "drift"},
                   "residual"});
   add_table(variables_table(unexplained));
-  add_against_traced(diagnosis, left);
+  add_against_predictor(diagnosis, residual);
 }
 
-void DiagnosisPanels::add_against_traced(const Diagnosis& diagnosis, const std::string& residual) {
-  if (has_traced_picture_ || diagnosis.unexplained.variables.empty()) return;
+void DiagnosisPanels::add_against_predictor(const Diagnosis& diagnosis, const std::string& residual) {
+  if (has_predictor_picture_ || diagnosis.unexplained.variables.empty()) return;
   const std::string& variable = diagnosis.unexplained.variables.front().name;
-  has_traced_picture_ = meet(report().columns, {variable_column(variable), residual});
-  if (has_traced_picture_)
+  has_predictor_picture_ = meet(report().columns, {variable_column(variable), residual});
+  if (has_predictor_picture_)
     add_binned("Remaining residual against " + variable, {residual}, {variable_column(variable)});
 }
 
-void DiagnosisPanels::add_traced(const Diagnosis& diagnosis) {
+void DiagnosisPanels::add_predictor(const Diagnosis& diagnosis) {
   if (diagnosis.unexplained.variables.empty()) return;
   const EmpiricalPredictor& variable = diagnosis.unexplained.variables.front();
   add_variable(variable_column(variable.name), variable.name, variable.unit, diagnosis.flights,
@@ -325,13 +325,13 @@ void DiagnosisPanels::add_residuals(const Diagnosis& diagnosis, const std::vecto
 }
 
 void DiagnosisPanels::add_last_panels(const Diagnosis& diagnosis, const std::vector<std::string>& residuals) {
-  const std::string left = residuals.empty() ? "" : residuals.back();
+  const std::string residual = residuals.empty() ? "" : residuals.back();
   add_distributions(report(), residuals);
   add_track(report(), "Remaining residual on the map",
             "The track over the ground: one colour over a leg or a heading indicates an error that depends "
             "on place or direction.",
-            left);
-  add_unexplained(diagnosis, left);
+            residual);
+  add_unexplained(diagnosis, residual);
   ReportTable limits{
       "Upper limits of effects that were not found",
       "Limits hold with 95 % confidence; the rms is what an effect at its limit would add beyond the model's "

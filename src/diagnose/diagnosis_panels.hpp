@@ -48,10 +48,10 @@ class DiagnosisPanels : public FlightReport {
                            std::size_t number);
 
   /// Adds the variable with the most unexplained structure, if any, to the axes of residual plots.
-  void add_traced(const Diagnosis& diagnosis);
+  void add_predictor(const Diagnosis& diagnosis);
 
   /// Adds the picture of residuals against this variable, once.
-  void add_against_traced(const Diagnosis& diagnosis, const std::string& residual);
+  void add_against_predictor(const Diagnosis& diagnosis, const std::string& residual);
 
   /// Residuals against the variables; the existing variables of `first` are shown first. Error bars are by
   /// the noise of the last residual.
@@ -96,11 +96,11 @@ class DiagnosisPanels : public FlightReport {
   std::vector<std::string> choices(const std::vector<std::string>& y,
                                    const std::vector<std::string>& first) const;
   /// Unexplained structure, and the variable that it varies with.
-  /// @param left column of the remaining residual
-  void add_unexplained(const Diagnosis& diagnosis, const std::string& left);
+  /// @param residual column of the remaining residual
+  void add_unexplained(const Diagnosis& diagnosis, const std::string& residual);
 
   std::vector<std::string> variables_;
-  bool has_traced_picture_ = false;
+  bool has_predictor_picture_ = false;
 };
 
 }  // namespace pcor::internal::report

@@ -276,7 +276,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
 
   const std::vector<Finding>& findings = diagnosis.findings;
   const bool found = !findings.empty();
-  panels.add_traced(diagnosis);
+  panels.add_predictor(diagnosis);
   std::vector<std::string> residuals{"before"};
   panels.add_column("before", found ? "residual before" : "residual", "hPa", diagnosis.flights,
                     &FlightDiagnosis::before);
@@ -288,7 +288,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelDefinition& model
   if (found)
     add_against_inputs(panels, diagnosis, residuals, 0);
   else
-    panels.add_against_traced(diagnosis, "before");
+    panels.add_against_predictor(diagnosis, "before");
   if (what_if != nullptr) {
     panels.add_what_if(*what_if, "before",
                        found ? inputs_of(findings.front().effect) : std::vector<std::string>{},

@@ -157,11 +157,11 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
   const double whole = analysis.search().score(effect, others).chi2;
   const Eigen::VectorXd fitted = analysis.coefficients(set_with(others, effect));
   const Eigen::VectorXd difference = fitted - analysis.coefficients(set_with(others, rival));
-  const std::vector<Eigen::Index> own = indices_of(analysis.groups()[effect], analysis.base());
+  const std::vector<Eigen::Index> indices = indices_of(analysis.groups()[effect], analysis.base());
   using Squares = std::array<double, 2>;  // squares of the contribution and of the difference
   const auto of_flights = analysis.whole_partition().all_gather_flights<Squares>([&](std::size_t f) {
     const auto columns = analysis.scores().rows[f].leftCols(difference.size());
-    return Squares{(columns(Eigen::all, own) * fitted(own)).squaredNorm(),
+    return Squares{(columns(Eigen::all, indices) * fitted(indices)).squaredNorm(),
                    (columns * difference).squaredNorm()};
   });
   std::map<std::size_t, Squares> against;  // keyed by reference
@@ -254,10 +254,10 @@ struct Added {
 /// Rms that the model does not absorb, and extreme, over all used records: against the first reference or,
 /// for an effect on another system, against the references that see it; and the largest rms against a single
 /// reference. The fraction that the model does not absorb is that of all references together.
-/// @param coefficients of all columns @param own those of the effect
+/// @param coefficients of all columns @param effect_coefficients those of the effect
 void measure(const Analysis& analysis, const References& references, std::size_t group,
-             const Eigen::VectorXd& coefficients, const Eigen::VectorXd& own, const Candidate& candidate,
-             Finding& finding) {
+             const Eigen::VectorXd& coefficients, const Eigen::VectorXd& effect_coefficients,
+             const Candidate& candidate, Finding& finding) {
   const auto of_flights = analysis.whole_partition().all_gather_flights<Added>([&](std::size_t f) {
     Added of_flight;
     const std::vector<double> added = analysis.added_by(f, group, coefficients);
@@ -281,10 +281,10 @@ void measure(const Analysis& analysis, const References& references, std::size_t
     finding.worst_flight = analysis.flight(f).samples->name;
     finding.worst_time = of_flights[f].worst_time;
   }
-  const double left = std::sqrt(analysis.search().remaining(group, own));
-  finding.rms = left * sum.rms();
+  const double fraction = std::sqrt(analysis.search().remaining(group, effect_coefficients));
+  finding.rms = fraction * sum.rms();
   for (std::size_t r = 0; r < sums.size(); ++r) {
-    const double rms = left * sums[r].rms();
+    const double rms = fraction * sums[r].rms();
     if ((r > 0 && gps_kind(*references[r])) || !(rms > finding.largest_rms)) continue;
     finding.largest_rms = rms;
     finding.largest_reference = r == 0 ? "" : references[r]->name();
@@ -382,18 +382,18 @@ std::vector<Finding> findings_of(const Analysis& analysis, const References& ref
     const std::size_t group = chosen[i];
     const Candidate& candidate = candidates[group];
     const Eigen::Index count = as_index(candidate.tested.size());
-    const Eigen::VectorXd own = estimate.segment(position, count);
+    const Eigen::VectorXd effect_coefficients = estimate.segment(position, count);
     Finding finding;
-    finding.effect = with_estimate(candidate, own);
+    finding.effect = with_estimate(candidate, effect_coefficients);
     finding.of_reference = candidate.is_of_reference();
     finding.is_alike = candidate.is_shared;
     finding.system = candidate.system;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
-    finding.estimates =
-        estimates_of(candidate, identifiable, own, covariance.block(position, position, count, count));
+    finding.estimates = estimates_of(candidate, identifiable, effect_coefficients,
+                                     covariance.block(position, position, count, count));
     finding.fixed = held_of(candidate, identifiable);
-    measure(analysis, references, group, coefficients, own, candidate, finding);
+    measure(analysis, references, group, coefficients, effect_coefficients, candidate, finding);
     position += count;
     const std::vector<std::size_t> without = set_without(chosen, group);
     // In units of the noise with the effect: the score of the search has the noise without it.
@@ -463,10 +463,10 @@ std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis) {
   std::vector<Eigen::VectorXd> evidence;
   for (const std::size_t group : chosen) {
     // Rows that only this group could explain, times the remaining residual.
-    const std::vector<Eigen::VectorXd> rows = search.leftover_rows(group, chosen);
-    const std::vector<Eigen::VectorXd> left = search.left(set_without(chosen, group));
+    const std::vector<Eigen::VectorXd> rows = search.rows_after(group, chosen);
+    const std::vector<Eigen::VectorXd> residuals = search.residuals_after(set_without(chosen, group));
     evidence.push_back(analysis.scores().by_minutes(
-        [&](std::size_t f) { return rows[f].cwiseProduct(left[f]) / variance; }));
+        [&](std::size_t f) { return rows[f].cwiseProduct(residuals[f]) / variance; }));
   }
   return evidence;
 }
@@ -569,10 +569,10 @@ void doubt_by_refit(Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
     const double removed = finding.rms_before * finding.rms_before - finding.rms_after * finding.rms_after;
     const bool is_large = finding.rms > std::max(min_rms, 0.5 * finding.rms_before);
-    const bool is_left =
+    const bool remains =
         removed < 0.5 * finding.rms * finding.rms && finding.rms_after > 0.8 * finding.rms_before;
     const bool is_worse = finding.rms_after > finding.rms_before;
-    if (!is_worse && !(is_large && is_left)) continue;
+    if (!is_worse && !(is_large && remains)) continue;
     diagnosis.notes.push_back(warning_note(
         fmt::format("confirm {} of {:.3f} hPa with a further reference or flights: a refit with it {} the "
                     "held-out rms from {:.3f} to {:.3f} hPa{}",

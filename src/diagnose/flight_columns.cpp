@@ -103,15 +103,15 @@ References in_order_of_diagnosis(References references) {
 PartitionedColumns columns_of_entries(
     const FlightPartition& partition, const std::function<SamplesOfFlight(std::size_t)>& read,
     const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
-  std::vector<FlightColumns> own(partition.flights());
+  std::vector<FlightColumns> local(partition.flights());
   PartitionedColumns columns{partition,
                              partition.map<FlightColumns>(partition.threads(), read,
                                                           [&](std::size_t entry, SamplesOfFlight samples) {
-                                                            own[entry] = make(entry, std::move(samples));
-                                                            return outline_of(own[entry]);
+                                                            local[entry] = make(entry, std::move(samples));
+                                                            return outline_of(local[entry]);
                                                           })};
-  for (std::size_t entry = 0; entry < own.size(); ++entry) {
-    if (partition.is_local(entry)) columns.flights[entry] = std::move(own[entry]);
+  for (std::size_t entry = 0; entry < local.size(); ++entry) {
+    if (partition.is_local(entry)) columns.flights[entry] = std::move(local[entry]);
   }
   return columns;
 }
@@ -150,21 +150,21 @@ PartitionedColumns columns_of_flights(const FlightSet& files, std::size_t count,
 }
 
 void leave_out_empty(PartitionedColumns& columns) {
-  const auto is_left = columns.partition.all_gather_flights<int>([&](std::size_t number) {
+  const auto is_kept = columns.partition.all_gather_flights<int>([&](std::size_t number) {
     const FlightColumns& flight = columns.flights[number];
     const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
     const bool is_long = flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(min_samples);
     const bool has_rows = !flight.is_by_gps || flight.gps.rows.size() > 0;
     return has_value(flight.given) && is_long && has_rows ? 1 : 0;
   });
-  std::vector<std::size_t> left;
+  std::vector<std::size_t> kept;
   std::vector<FlightColumns> flights;
-  for (std::size_t number = 0; number < is_left.size(); ++number) {
-    if (is_left[number] == 0) continue;
-    left.push_back(number);
+  for (std::size_t number = 0; number < is_kept.size(); ++number) {
+    if (is_kept[number] == 0) continue;
+    kept.push_back(number);
     flights.push_back(std::move(columns.flights[number]));
   }
-  columns = {columns.partition.of_entries(left), std::move(flights)};
+  columns = {columns.partition.of_entries(kept), std::move(flights)};
 }
 
 std::vector<std::string> problems_of(
@@ -208,10 +208,10 @@ void hold_imitated_coefficients(CandidateSet& set, PartitionedColumns& columns, 
   const auto sums = columns.partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t f) {
     const std::vector<std::size_t> used = used_samples(columns.flights[f].mask);
     const Eigen::MatrixXd base = columns.flights[f].base(used, Eigen::all).cast<double>();
-    Eigen::MatrixXd own(count, count + 1);
-    own.leftCols(count) = base.transpose() * base;
-    own.rightCols(1).setConstant(static_cast<double>(used.size()));
-    return own;
+    Eigen::MatrixXd of_flight(count, count + 1);
+    of_flight.leftCols(count) = base.transpose() * base;
+    of_flight.rightCols(1).setConstant(static_cast<double>(used.size()));
+    return of_flight;
   });
   std::vector<Eigen::Index> kept;
   std::vector<BaseCoefficient> base;
@@ -219,8 +219,8 @@ void hold_imitated_coefficients(CandidateSet& set, PartitionedColumns& columns, 
     BaseCoefficient& coefficient = set.base[static_cast<std::size_t>(k)];
     if (coefficient.of_reference && coefficient.usual > 0.0) {
       const Eigen::VectorXd across = sums(kept, k);
-      const double left = sums(k, k) - across.dot(pseudo_solution(sums(kept, kept), across));
-      if (!(coefficient.usual * std::sqrt(std::max(0.0, left) / sums(k, count)) > notable)) continue;
+      const double remaining = sums(k, k) - across.dot(pseudo_solution(sums(kept, kept), across));
+      if (!(coefficient.usual * std::sqrt(std::max(0.0, remaining) / sums(k, count)) > notable)) continue;
     }
     kept.push_back(k);
     base.push_back(std::move(coefficient));

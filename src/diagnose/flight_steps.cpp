@@ -44,23 +44,23 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
     right[f] = unit[f] * sum(model, model + 1);
   }
   const Eigen::VectorXd scale = of_model.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricEigen own(scale.asDiagonal() * of_model * scale.asDiagonal());
+  const SymmetricEigen eigen(scale.asDiagonal() * of_model * scale.asDiagonal());
   Eigen::VectorXd root = Eigen::VectorXd::Zero(model);  // square root of the inverse
   for (Eigen::Index k = 0; k < model; ++k) {
-    if (own.eigenvalues()[k] > min_eigenvalue) root[k] = 1.0 / std::sqrt(own.eigenvalues()[k]);
+    if (eigen.eigenvalues()[k] > min_eigenvalue) root[k] = 1.0 / std::sqrt(eigen.eigenvalues()[k]);
   }
-  const Eigen::MatrixXd half = root.asDiagonal() * own.eigenvectors().transpose() * scale.asDiagonal();
+  const Eigen::MatrixXd half = root.asDiagonal() * eigen.eigenvectors().transpose() * scale.asDiagonal();
   const Eigen::VectorXd by_model = half * right_of_model;
   const SymmetricEigen shared((half * together) * (half * together).transpose());
   const Eigen::MatrixXd rows_of_model = shared.eigenvectors().transpose() * (half * together);
   // Difference between the inverse and the identity, for constants outside and inside the model.
   const Eigen::VectorXd beyond = shared.eigenvalues().unaryExpr(
       [](double part) { return 1.0 - part > min_eigenvalue ? 1.0 / (1.0 - part) : -1.0 / part; });
-  const Eigen::VectorXd left = right - (half * together).transpose() * by_model;
+  const Eigen::VectorXd right_after = right - (half * together).transpose() * by_model;
   const Eigen::VectorXd solution =
-      left + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * left));
+      right_after + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * right_after));
   const double degrees_of_freedom = std::max(1.0, rows - static_cast<double>(model + flights));
-  const double variance = (squares - by_model.squaredNorm() - left.dot(solution)) / degrees_of_freedom;
+  const double variance = (squares - by_model.squaredNorm() - right_after.dot(solution)) / degrees_of_freedom;
   const Eigen::VectorXd diagonal = 1.0 + (rows_of_model.cwiseAbs2().transpose() * beyond).array();
   const Eigen::VectorXd with_sum =
       unit + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * unit));

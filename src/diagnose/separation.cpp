@@ -54,20 +54,20 @@ RegimeSum sum_of(Regime regime, const WhitenedSystem& scores, std::size_t number
   RegimeSum sum;
   for (const Interval& interval : samples.intervals) {
     if (interval.regime != regime) continue;
-    std::vector<Eigen::Index> own;
+    std::vector<Eigen::Index> indices;
     double within = 0.0;
     for (Eigen::Index row = 0; row < rows.rows(); ++row) {
       const auto i = static_cast<std::size_t>(scores.bin_of(number, row));
       if (time[i] < interval.begin || time[i] >= interval.end) continue;
       within += 1.0;
-      if (!is_phase(regime) || (regimes[i] >> phases).none()) own.push_back(row);
+      if (!is_phase(regime) || (regimes[i] >> phases).none()) indices.push_back(row);
     }
-    if (own.empty()) continue;
-    const Eigen::MatrixXd columns = rows(own, Eigen::seqN(0, rows.cols() - 1));
+    if (indices.empty()) continue;
+    const Eigen::MatrixXd columns = rows(indices, Eigen::seqN(0, rows.cols() - 1));
     RegimeSum part{columns.transpose() * columns};
     if (flight.columns.reference == 0) {  // an interval counts once for all references
       part.intervals = 1.0;
-      part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) / within;
+      part.duration = (interval.end - interval.begin) * static_cast<double>(indices.size()) / within;
     }
     sum += part;
   }
@@ -86,8 +86,8 @@ constexpr double seconds_per_minute = 60.0;
 double min_distinct(const SeparationProblem& rivalry, const Eigen::MatrixXd& information) {
   double minimum = std::numeric_limits<double>::infinity();
   for (const std::vector<Eigen::Index>& rest : rivalry.rests)
-    minimum =
-        std::min(minimum, distinct_squares(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
+    minimum = std::min(minimum,
+                       distinct_squares(information, rest, rivalry.columns, rivalry.size) / rivalry.variance);
   return minimum;
 }
 

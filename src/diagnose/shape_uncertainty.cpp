@@ -95,8 +95,9 @@ std::vector<Eigen::MatrixXd> shape_uncertainty(const FlightPartition& partition,
       auto columns = result[f].middleCols(shape_columns * e, shape_columns);
       columns.leftCols(factors) = factor_sd * (effect.asDiagonal() * varying);
       columns.col(factors) = delay_sd * rate_of(effect, binned.bins[f]);
-      const Eigen::VectorXd own = squares.col(as_index(flights[f]->reference));
-      if (own[0] > 0.0) columns.col(factors + 1).setConstant(std::sqrt(own[0] / own[1]));
+      const Eigen::VectorXd of_reference = squares.col(as_index(flights[f]->reference));
+      if (of_reference[0] > 0.0)
+        columns.col(factors + 1).setConstant(std::sqrt(of_reference[0] / of_reference[1]));
     }
   }
   return result;

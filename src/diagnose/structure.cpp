@@ -23,21 +23,22 @@ constexpr std::size_t max_columns = 6;
 constexpr std::size_t fine_columns = 24;
 constexpr std::size_t bins_per_column = 40;
 constexpr double max_missing = 0.1;
-constexpr double min_direction_left = 1e-3;  // part of a direction remaining after the model
+constexpr double min_remaining_direction = 1e-3;  // part of a direction remaining after the model
 constexpr Eigen::Index draws = 99;  // draws for each of the two ways of removing the dependence on variables
 /// Fractions of the drift rms that may remain after a variable explains part of it.
 constexpr std::array<double, 3> parts_of_drift{1.0, 0.4, 0.0};
 
 /// @param shift_seed seed of the shifts; @param sign_seed seed of the signs, combined with the minute
-DrawnResiduals drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint64_t shift_seed,
+DrawnResiduals drawn(const Eigen::VectorXd& residual, const Binning& bins, std::uint64_t shift_seed,
                      std::uint64_t sign_seed) {
   constexpr double length = 60.0;  // s
-  DrawnResiduals result{Eigen::MatrixXd(left.size(), draws), left};
+  DrawnResiduals result{Eigen::MatrixXd(residual.size(), draws), residual};
   std::mt19937_64 shifts(shift_seed);
   boost::random::uniform_real_distribution<double> part(0.1, 0.9);  // the same on every machine
   for (Eigen::Index k = 0; k < draws; ++k) {
-    const auto first = static_cast<Eigen::Index>(part(shifts) * static_cast<double>(left.size()));
-    std::rotate_copy(left.begin(), left.begin() + first, left.end(), result.shifted.col(k).begin());
+    const auto first = static_cast<Eigen::Index>(part(shifts) * static_cast<double>(residual.size()));
+    std::rotate_copy(residual.begin(), residual.begin() + first, residual.end(),
+                     result.shifted.col(k).begin());
   }
   std::vector<double> minutes;
   for (const double time : bins.time()) {
@@ -68,10 +69,10 @@ double p_value_among(double value, const Eigen::VectorXd& others) {
 }
 
 /// Whitened residuals of each local flight after least squares of all columns.
-std::vector<Eigen::VectorXd> left_of(const WhitenedSystem& scores) {
+std::vector<Eigen::VectorXd> least_squares_residuals(const WhitenedSystem& scores) {
   const Eigen::Index width = scores.columns();
-  return scores.left(pseudo_solution(scores.information.topLeftCorner(width, width),
-                                     scores.information.col(width).head(width)));
+  return scores.residuals_after(pseudo_solution(scores.information.topLeftCorner(width, width),
+                                                scores.information.col(width).head(width)));
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ Eigen::MatrixXd DrawnResiduals::products_with(const Eigen::MatrixXd& columns) co
   Eigen::MatrixXd by_minutes = Eigen::MatrixXd::Zero(signs.rows(), columns.cols());
   for (Eigen::Index c = 0; c < columns.cols(); ++c) {
     for (std::size_t i = 0; i < minute.size(); ++i)
-      by_minutes(minute[i], c) += left[as_index(i)] * columns(as_index(i), c);
+      by_minutes(minute[i], c) += residual[as_index(i)] * columns(as_index(i), c);
   }
   return side_by_side(columns.transpose() * shifted, by_minutes.transpose() * signs);
 }
@@ -96,23 +97,25 @@ StructureTest::StructureTest(const FlightPartition& partition, const BinnedFligh
   for (const double part : parts_of_drift) {
     if (part < 1.0 && !noise.has_drift()) break;
     Whitened& flights = whitened_.emplace_back();
-    NoiseModel left = noise;
-    for (double& slow : left.drift_component_rms) slow *= part;
-    const WhitenedSystem scores = whiten_system(partition, bins_, binned.columns, residuals, left);
+    NoiseModel remaining_noise = noise;
+    for (double& slow : remaining_noise.drift_component_rms) slow *= part;
+    const WhitenedSystem scores = whiten_system(partition, bins_, binned.columns, residuals, remaining_noise);
     rows_ = scores.row_count;
     const Eigen::Index width = scores.columns();
     flights.inverse = information_inverse(scores.information.topLeftCorner(width, width));
     flights.squares = products_after(scores.information, width)(0, 0);
-    flights.left = left_of(scores);
+    flights.residuals = least_squares_residuals(scores);
     for (std::size_t f = 0; f < bins_.size(); ++f) {
-      flights.whitening.emplace_back(bins_[f], left, f);
+      flights.whitening.emplace_back(bins_[f], remaining_noise, f);
       flights.model.emplace_back();
       if (partition.is_local(f)) flights.model[f] = scores.rows[f].leftCols(width);
     }
     flights.determinant = partition.all_reduce_flights<double>(
         [&flights](std::size_t f) { return flights.whitening[f].log_determinant(); });
     const std::vector<Eigen::VectorXd> noise_alone =
-        aside.empty() ? flights.left : left_of(whiten_system(partition, bins_, with_aside, residuals, left));
+        aside.empty() ? flights.residuals
+                      : least_squares_residuals(
+                            whiten_system(partition, bins_, with_aside, residuals, remaining_noise));
     flights.drawn.resize(bins_.size());
     flights.model_with_drawn = partition.all_reduce_flights<Eigen::MatrixXd>(
         [&](std::size_t f) {
@@ -125,8 +128,8 @@ StructureTest::StructureTest(const FlightPartition& partition, const BinnedFligh
 }
 
 double StructureTest::minus_likelihood(const Whitened& flights, double explained) const {
-  const double left = std::max(flights.squares - explained, 1e-9 * flights.squares);
-  return flights.determinant + static_cast<double>(rows_) * std::log(left);
+  const double squares = std::max(flights.squares - explained, 1e-9 * flights.squares);
+  return flights.determinant + static_cast<double>(rows_) * std::log(squares);
 }
 
 bool StructureTest::add(const TestedVariable& variable) {
@@ -180,7 +183,7 @@ Eigen::MatrixXd StructureTest::products(std::size_t flight, const Eigen::MatrixX
     auto part = all.middleCols(width * as_index(k), width);
     part.leftCols(count) = white.transpose() * white;
     part.middleCols(count, model) = white.transpose() * flights.model[flight];
-    part.col(count + model) = white.transpose() * flights.left[flight];
+    part.col(count + model) = white.transpose() * flights.residuals[flight];
     part.rightCols(2 * draws) = flights.drawn[flight].products_with(white);
   }
   return all;
@@ -190,26 +193,26 @@ StructureTest::ExplainedSquares StructureTest::explained_by(const Eigen::MatrixX
                                                             const Whitened& flights) {
   const Eigen::Index count = products.rows();
   const Eigen::Index model = flights.inverse.rows();
-  Eigen::MatrixXd own = products.leftCols(count);
+  Eigen::MatrixXd information = products.leftCols(count);
   const Eigen::MatrixXd with_model = products.middleCols(count, model).transpose();
   const Eigen::VectorXd score = products.col(count + model);
   Eigen::MatrixXd drawn = products.rightCols(2 * draws);
   const Eigen::MatrixXd solution = flights.inverse * with_model;
-  const Eigen::VectorXd before = own.diagonal();
-  own -= with_model.transpose() * solution;
+  const Eigen::VectorXd before = information.diagonal();
+  information -= with_model.transpose() * solution;
   drawn -= solution.transpose() * flights.model_with_drawn;
 
   ExplainedSquares explained;
-  if (own(0, 0) > min_direction_left * before[0]) {
+  if (information(0, 0) > min_remaining_direction * before[0]) {
     explained.line_score = score[0];
-    explained.line_information = own(0, 0);
-    explained.line = score[0] * score[0] / own(0, 0);
+    explained.line_information = information(0, 0);
+    explained.line = score[0] * score[0] / information(0, 0);
   }
   const Eigen::VectorXd scale = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricEigen solver(scale.asDiagonal() * own * scale.asDiagonal());
+  const SymmetricEigen solver(scale.asDiagonal() * information * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (!(solver.eigenvalues()[k] > min_direction_left)) continue;
+    if (!(solver.eigenvalues()[k] > min_remaining_direction)) continue;
     turn.col(explained.degrees_of_freedom++) =
         scale.asDiagonal() * solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
   }

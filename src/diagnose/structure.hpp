@@ -28,7 +28,7 @@ struct Structure : EmpiricalPredictor {
 /// for each minute.
 struct DrawnResiduals {
   Eigen::MatrixXd shifted{};           ///< one column per draw
-  Eigen::VectorXd left{};              ///< the residuals
+  Eigen::VectorXd residual{};          ///< whitened
   std::vector<Eigen::Index> minute{};  ///< number of the minute of each bin
   Eigen::MatrixXd signs{};             ///< one row per minute, one column per draw
 
@@ -79,9 +79,9 @@ class StructureTest {
   /// Flights whitened with part of the drift; detailed data of local flights only.
   struct Whitened {
     std::vector<Whitening> whitening{};
-    std::vector<Eigen::MatrixXd> model{};  // columns of each flight
-    std::vector<Eigen::VectorXd> left{};   // residuals after the model
-    std::vector<DrawnResiduals> drawn{};   // shifted in time or with random signs
+    std::vector<Eigen::MatrixXd> model{};      // columns of each flight
+    std::vector<Eigen::VectorXd> residuals{};  // after the model
+    std::vector<DrawnResiduals> drawn{};       // shifted in time or with random signs
     Eigen::MatrixXd model_with_drawn{};
     Eigen::MatrixXd inverse{};  // inverse of the information of the model
     double squares = 0.0;       // sum of the remaining squares

@@ -239,8 +239,8 @@ std::vector<TestedVariable> recorded_variables(const FlightSet& files,
     const double range = maximum - minimum;
     if (!(range > 0.5 * variable.turn && range <= variable.turn)) variable.turn = 0.0;
     for (const FlightColumns& flight : flights) {
-      const Values& own = values[k][flight.file];
-      variable.values.push_back(own ? own : std::make_shared<const std::vector<double>>());
+      const Values& of_flight = values[k][flight.file];
+      variable.values.push_back(of_flight ? of_flight : std::make_shared<const std::vector<double>>());
     }
   }
   return result;

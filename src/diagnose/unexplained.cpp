@@ -81,18 +81,18 @@ std::string worst_regime(const Analysis& analysis, const std::vector<std::vector
   // Squares and their number for each regime.
   using Sums = Eigen::Matrix<double, static_cast<int>(regime_count), 2>;
   const auto sums = analysis.partition().all_reduce_flights<Sums>([&](std::size_t f) {
-    Sums own = Sums::Zero();
+    Sums of_flight = Sums::Zero();
     const FlightSamples& samples = *analysis.flights()[f].samples;
     const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
     for (std::size_t i = 0; i < after[f].size(); ++i) {
       if (std::isnan(after[f][i])) continue;
       for (std::size_t r = 0; r < regime_count; ++r) {
         if (!regimes[i][r]) continue;
-        own(as_index(r), 0) += after[f][i] * after[f][i];
-        own(as_index(r), 1) += 1.0;
+        of_flight(as_index(r), 0) += after[f][i] * after[f][i];
+        of_flight(as_index(r), 1) += 1.0;
       }
     }
-    return own;
+    return of_flight;
   });
   double worst = noise * noise;
   std::string name;
@@ -229,25 +229,25 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis,
 }
 
 /// Possible locations of a cause: at the static ports, the laser or the thermometer it leaves the total
-/// pressures unchanged; at the pitot or at the transducers it changes them. @param traced the structures of
-/// the variables
-void find_places(const Analysis& analysis, const std::vector<const Structure*>& traced,
+/// pressures unchanged; at the pitot or at the transducers it changes them. @param structures of the
+/// variables
+void find_places(const Analysis& analysis, const std::vector<const Structure*>& structures,
                  const References& references, std::vector<EmpiricalPredictor>& variables) {
   constexpr double seen = 3.0;           // standard errors
   constexpr double would_be_seen = 6.0;  // the same slope as against the first reference
   const std::size_t count = analysis.reference_count();
   std::size_t blind = 0;  // first reference that is insensitive to static defects
   while (blind < count && references[blind]->sees_static_defect()) ++blind;
-  if (blind == 0 || blind >= count || traced.empty()) return;
-  std::vector<ColumnGroup> groups(count * traced.size());
+  if (blind == 0 || blind >= count || structures.empty()) return;
+  std::vector<ColumnGroup> groups(count * structures.size());
   for (std::size_t k = 0; k < groups.size(); ++k) {
     groups[k].first = as_index(k);
     groups[k].count = 1;
     groups[k].bounds.resize(1);
   }
-  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, traced));
+  const WhitenedSystem scores = analysis.scores_with(lines_in(analysis, structures));
   const EffectSearch search(scores, analysis.base(), groups);
-  for (std::size_t k = 0; k < traced.size(); ++k) {
+  for (std::size_t k = 0; k < structures.size(); ++k) {
     EmpiricalPredictor& variable = variables[k];
     const GroupScore total = search.score(count * k + blind, {count * k});
     if (total.degrees_of_freedom == 0.0) continue;
@@ -259,7 +259,7 @@ void find_places(const Analysis& analysis, const std::vector<const Structure*>& 
     } else if (std::abs(variable.slope) > would_be_seen * error) {
       variable.components = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
       if (references.front()->reads_laser()) variable.components.emplace_back("thermometer");
-      variable.components.emplace_back("pitot");  // both systems alike
+      variable.components.emplace_back("pitot");  // common to both systems
     }
   }
 }
@@ -310,16 +310,16 @@ bool are_images(const Analysis& analysis,
                 const std::function<std::array<const std::vector<double>*, 2>(std::size_t flight)>& pair) {
   constexpr double image = 0.95;
   const auto of_flights = analysis.partition().all_gather_flights<PairMoments>([&](std::size_t f) {
-    PairMoments own;
+    PairMoments moments;
     const auto [x, y] = pair(f);
-    if (y == nullptr || y->empty()) return own;
+    if (y == nullptr || y->empty()) return moments;
     for (const std::size_t record : analysis.bins(f).records()) {
-      if (std::isfinite((*x)[record]) && std::isfinite((*y)[record])) own.add((*x)[record], (*y)[record]);
+      if (std::isfinite((*x)[record]) && std::isfinite((*y)[record])) moments.add((*x)[record], (*y)[record]);
     }
-    return own;
+    return moments;
   });
   PairMoments all;
-  for (const PairMoments& own : of_flights) all.add(own);
+  for (const PairMoments& moments : of_flights) all.add(moments);
   return std::abs(all.correlation()) > image;
 }
 
@@ -386,8 +386,8 @@ LineRival best_line(const Analysis& analysis, const std::vector<std::size_t>& ch
 }
 
 /// Adds the variables with significant structure, each once, and returns their structures.
-std::vector<const Structure*> add_traced(const Analysis& analysis, const StructureTest& tested,
-                                         Diagnosis& diagnosis) {
+std::vector<const Structure*> add_predictors(const Analysis& analysis, const StructureTest& tested,
+                                             Diagnosis& diagnosis) {
   std::vector<EmpiricalPredictor>& variables = diagnosis.unexplained.variables;
   std::vector<const Structure*> order;
   for (const Structure& structure : tested.structures()) {
@@ -400,21 +400,22 @@ std::vector<const Structure*> add_traced(const Analysis& analysis, const Structu
   std::sort(order.begin(), order.end(),
             [&](const Structure* a, const Structure* b) { return merit(*a) > merit(*b); });
   std::set<std::string> named;
-  std::vector<const Structure*> traced;
+  std::vector<const Structure*> structures;
   for (const Structure* const structure : order) {
     if (variables.size() == max_variables) break;
     if (!named.insert(structure->name).second) continue;
     variables.push_back(predictor_of(*structure, tested.p_value_of(structure->chi2_one_dof)));
-    for (std::size_t k = 0; k < traced.size() && variables.back().similar_to.empty(); ++k) {
-      if (variables[k].similar_to.empty() && is_image(analysis, *structure->variable, *traced[k]->variable))
+    for (std::size_t k = 0; k < structures.size() && variables.back().similar_to.empty(); ++k) {
+      if (variables[k].similar_to.empty() &&
+          is_image(analysis, *structure->variable, *structures[k]->variable))
         variables.back().similar_to = variables[k].name;
     }
-    traced.push_back(structure);
-    if (traced.size() > 1) continue;
+    structures.push_back(structure);
+    if (structures.size() > 1) continue;
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f)
       diagnosis.flights[f].traced = *structure->variable->values[f];
   }
-  return traced;
+  return structures;
 }
 
 std::vector<FlightOffset> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
@@ -458,14 +459,14 @@ void note_unnamed_inputs(const FlightSet& files, const ModelDefinition& model, D
       const std::string role(info_of(input).name);
       const auto variables = files.partition().all_gather_flights<std::string>(
           [&](std::size_t flight) { return sure_variable(files[flight], role); });
-      for (const EmpiricalPredictor& traced : diagnosis.unexplained.variables) {
+      for (const EmpiricalPredictor& predictor : diagnosis.unexplained.variables) {
         if (std::any_of(variables.begin(), variables.end(),
-                        [&](const std::string& variable) { return variable != traced.name; }))
+                        [&](const std::string& variable) { return variable != predictor.name; }))
           continue;
-        diagnosis.unnamed_roles.push_back({role, traced.name, effect.effect});
+        diagnosis.unnamed_roles.push_back({role, predictor.name, effect.effect});
         diagnosis.notes.push_back(fmt::format(
             "{} was not tested: write {} = \"{}\" into [variables] of the model; {} seems to be that role",
-            effect.effect, role, traced.name, traced.name));
+            effect.effect, role, predictor.name, predictor.name));
       }
     }
   }
@@ -491,9 +492,10 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
 
   StructureTest tested = test_all(analysis, chosen, variables);
   const double by_variables = tested.p_value();
-  double left = 0.0;
+  double remaining_chi2 = 0.0;
   for (const Structure& structure : tested.structures()) {
-    if (by_variables < max_p_value) left = std::max(left, structure.gain - structure.degrees_of_freedom);
+    if (by_variables < max_p_value)
+      remaining_chi2 = std::max(remaining_chi2, structure.gain - structure.degrees_of_freedom);
   }
   LineRival line;
   if (!chosen.empty())
@@ -516,9 +518,9 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
                         analysis.partition(), [&](std::size_t f) -> const auto& { return residuals[f]; })
                   : rms_of_flights(&FlightDiagnosis::after);
     const double noise_rms = diagnosis.noise_rms_with_findings;
-    const std::vector<const Structure*> traced = add_traced(analysis, tested, diagnosis);
+    const std::vector<const Structure*> structures = add_predictors(analysis, tested, diagnosis);
     // Retained effects describe a part of every reference that the lines do not include.
-    if (chosen.empty() || overrules) find_places(analysis, traced, references, found.variables);
+    if (chosen.empty() || overrules) find_places(analysis, structures, references, found.variables);
     // Part beyond the noise; at least the drift and the part that the best variable explains.
     found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
     if (!found.variables.empty())
@@ -540,10 +542,10 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
         "95 %)",
         diagnosis.rival));
   }
-  return left;
+  return remaining_chi2;
 }
 
-std::string id_of_trace(const std::string& variable) {
+std::string id_of_predictor(const std::string& variable) {
   std::string id = "traced-";
   for (const char each : variable) {
     const auto letter = static_cast<unsigned char>(each);
@@ -554,7 +556,7 @@ std::string id_of_trace(const std::string& variable) {
 
 ModelEffect effect_of(const EmpiricalPredictor& variable, const std::string& flights) {
   ModelEffect effect;
-  effect.id = id_of_trace(variable.name);
+  effect.id = id_of_predictor(variable.name);
   effect.parameter_names = {"k"};
   effect.parameters = {variable.slope};
   effect.formula = variable.formula;

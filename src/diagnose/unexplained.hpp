@@ -19,11 +19,11 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
                        const ModelDefinition& extended, const References& references,
                        const DiagnoseOptions& options, Diagnosis& diagnosis);
 
-/// Name of an effect that describes a traced variable.
-std::string id_of_trace(const std::string& variable);
+/// Name of an effect that describes a predictor.
+std::string id_of_predictor(const std::string& variable);
 
-/// Formula of a traced variable as an effect with the estimated slope.
-/// @param flights description of the flights in which it was traced
+/// Formula of a predictor as an effect with the estimated slope.
+/// @param flights description of the flights in which it was found
 ModelEffect effect_of(const EmpiricalPredictor& variable, const std::string& flights);
 
 }  // namespace pcor::internal

@@ -25,7 +25,7 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t max_traced = 2;
+constexpr std::size_t max_predictors = 2;
 
 /// Whether a candidate is the requested effect, in its shape.
 bool is_meant(const Candidate& candidate, const WhatIfCandidate& requested) {
@@ -213,17 +213,18 @@ std::vector<ModelEffect> formulas_with(std::vector<ModelEffect> formulas,
 }
 
 /// Effects and coefficients of a panel. @param found effects of the candidates of the set
-/// @param own start values of the model's coefficients, if they differ from those of the model
+/// @param start_values of the model's coefficients, if they differ from those of the model
 WhatIfPanel panel_of(const CandidateSet& set, const std::vector<WhatIfCandidate>& found,
-                     const std::vector<CoefficientEstimate>& own, const std::string& flaps_variable) {
+                     const std::vector<CoefficientEstimate>& start_values,
+                     const std::string& flaps_variable) {
   WhatIfPanel panel;
   panel.own = set.base.size();
   for (const BaseCoefficient& coefficient : set.base) {
-    const auto start = std::find_if(own.begin(), own.end(), [&](const CoefficientEstimate& each) {
-      return each.name == coefficient.name;
-    });
+    const auto start =
+        std::find_if(start_values.begin(), start_values.end(),
+                     [&](const CoefficientEstimate& each) { return each.name == coefficient.name; });
     panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
-                                  start == own.end() ? coefficient.value : start->value,
+                                  start == start_values.end() ? coefficient.value : start->value,
                                   coefficient.bounds.lower, coefficient.bounds.upper,
                                   coefficient.of_reference});
   }
@@ -272,11 +273,11 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   std::vector<std::string> flights;
   for (const FlightDiagnosis& flight : diagnosis.flights) flights.push_back(flight.name);
   // A variable with structure that no effect explains counts as found.
-  std::size_t traced = 0;
+  std::size_t predictors = 0;
   for (const EmpiricalPredictor& variable : diagnosis.unexplained.variables) {
-    if (variable.formula.empty() || traced == max_traced) continue;
+    if (variable.formula.empty() || predictors == max_predictors) continue;
     const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
-    const bool counts = traced++ == 0 && diagnosis.findings.empty();
+    const bool counts = predictors++ == 0 && diagnosis.findings.empty();
     add({effect.id, "varies with " + variable.name, effect, false, counts ? effect.id : ""});
   }
   // Nearest candidates by estimate in units of the error.

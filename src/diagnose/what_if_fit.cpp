@@ -143,7 +143,7 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Part
     const WhatIfCoefficient& coefficient = panel.coefficients[static_cast<std::size_t>(c)];
     start_[c] = coefficient.start;
     given_[c] = coefficient.given - coefficient.start;
-    if (c < base_ && !coefficient.fixed) own_.push_back(c);
+    if (c < base_ && !coefficient.fixed) free_base_.push_back(c);
   }
   for (PartitionedColumns* all : {&flights_, &others_}) {
     for (FlightColumns& flight : all->flights) {
@@ -190,7 +190,7 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Part
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
-  Indices free = own_;
+  Indices free = free_base_;
   for (const std::size_t group : groups)
     free.insert(free.end(), identifiable_[group].begin(), identifiable_[group].end());
   return free;
@@ -213,12 +213,12 @@ std::vector<Eigen::VectorXd> WhatIfFit::weights_at(const Eigen::VectorXd& values
   const FlightPartition& partition = flights_.partition;
   std::vector<Eigen::VectorXd> weights(binned_.bins.size());
   for (std::size_t first = 0, last = 0; first < weights.size(); first = last) {
-    std::vector<Eigen::VectorXd> left;
+    std::vector<Eigen::VectorXd> residuals;
     for (; last < weights.size() && binned_.reference[last] == binned_.reference[first]; ++last) {
       if (partition.is_local(last))
-        left.emplace_back(binned_.residuals[last] - binned_.columns[last] * values);
+        residuals.emplace_back(binned_.residuals[last] - binned_.columns[last] * values);
     }
-    const double deviation = robust_deviation(partition.comm(), left);
+    const double deviation = robust_deviation(partition.comm(), residuals);
     for (std::size_t f = first; f < last; ++f)
       weights[f] = weights_of_bins(binned_.bins[f], deviation > 0.0 ? deviation : 1.0);
   }
@@ -244,12 +244,12 @@ WhitenedSystem WhatIfFit::least_squares(const Indices& free, bool is_robust, Eig
     const Eigen::VectorXd length = system.information.diagonal().head(values.size()).cwiseSqrt();
     const bool settled = step > 0 && length.cwiseProduct(values - before).cwiseAbs().maxCoeff() < enough;
     if (!is_robust || settled || step == max_steps) break;
-    std::vector<Eigen::VectorXd> left;
+    std::vector<Eigen::VectorXd> residuals;
     for (std::size_t f = 0; f < weights.size(); ++f)
-      left.emplace_back(plain[f].asDiagonal() * (binned_.residuals[f] - binned_.columns[f] * values));
-    const double deviation = std::max(robust_deviation(flights_.partition.comm(), left), 1e-300);
+      residuals.emplace_back(plain[f].asDiagonal() * (binned_.residuals[f] - binned_.columns[f] * values));
+    const double deviation = std::max(robust_deviation(flights_.partition.comm(), residuals), 1e-300);
     for (std::size_t f = 0; f < weights.size(); ++f)
-      weights[f] = plain[f].cwiseProduct((left[f] / deviation).unaryExpr(&huber_weight).cwiseSqrt());
+      weights[f] = plain[f].cwiseProduct((residuals[f] / deviation).unaryExpr(&huber_weight).cwiseSqrt());
   }
   return system;
 }
@@ -280,8 +280,8 @@ WhatIfWeights WhatIfFit::find_sums(const ModelDefinition& model, const Candidate
       {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, free); },
        [&](std::size_t f) -> Eigen::VectorXd { return binned_.residuals[f] - binned_.columns[f] * values; },
        digest_of(serialized(values))},
-      [&](const auto& bins, const auto& fitted, const auto& left) {
-        return find_noise(bins, fitted, left, partition.threads()).model;
+      [&](const auto& bins, const auto& fitted, const auto& residuals) {
+        return find_noise(bins, fitted, residuals, partition.threads()).model;
       });
   const WhitenedSystem with_noise =
       whiten_system(partition, binned_.bins, binned_.columns, binned_.residuals, noise);

@@ -49,7 +49,7 @@ class WhatIfFit {
   std::vector<ColumnGroup> groups_;
   std::vector<std::vector<Eigen::Index>> identifiable_{};  // columns of each group
   Eigen::Index base_ = 0;
-  std::vector<Eigen::Index> own_{};  // the model's own columns that are fitted
+  std::vector<Eigen::Index> free_base_{};  // fitted columns of the model
   Eigen::VectorXd start_{};
   Eigen::VectorXd given_{};  // given values less the start values
   BinnedFlights binned_{};

@@ -162,7 +162,7 @@ void FitSums::add(const FitSums& other) {
 }
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
-                                const Eigen::MatrixXd& covariance, double left, RefitResult& result) {
+                                const Eigen::MatrixXd& covariance, double misfit_rms, RefitResult& result) {
   const std::vector<Compared> each = compared(flights, values, true);
   BeforeAndAfter all;
   FittedMeans fitted;
@@ -185,7 +185,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
         const double by_wander = std::max(fitted.expected_bias(one.held_out_blocks), part.after.bias_error);
         const double by_coefficients =
             one.held_out_derivatives.dot(covariance * one.held_out_derivatives);  // hPa^2
-        part.expected_bias = std::sqrt(by_wander * by_wander + by_coefficients + left * left);
+        part.expected_bias = std::sqrt(by_wander * by_wander + by_coefficients + misfit_rms * misfit_rms);
       }
       result.flights.push_back(std::move(part));
     }

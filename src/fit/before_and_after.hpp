@@ -63,10 +63,10 @@ struct BeforeAndAfter {
 
 /// @param covariance of the fitted parameters, without the uncertainty of the reference, which is common to
 /// the held-out samples
-/// @param left misfit of the law, hPa, rms
+/// @param misfit_rms misfit of the law, hPa
 /// @param result receives the statistics of the flights with each reference, and of samples with flaps
 /// extended
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
-                                const Eigen::MatrixXd& covariance, double left, RefitResult& result);
+                                const Eigen::MatrixXd& covariance, double misfit_rms, RefitResult& result);
 
 }  // namespace pcor::internal

@@ -363,8 +363,8 @@ class ScoreSums {
       slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(time.size());
     }
     const Eigen::MatrixXd columns = rows.without_offsets(rows.columns, weight);
-    const Eigen::MatrixXd left = columns.middleCols(part.first, part.width);
-    const Eigen::MatrixXd weighted = flights.weighted(flight, weight.asDiagonal() * left);
+    const Eigen::MatrixXd part_columns = columns.middleCols(part.first, part.width);
+    const Eigen::MatrixXd weighted = flights.weighted(flight, weight.asDiagonal() * part_columns);
     if (part.is_last) {
       // Stages are fitted to the first reference.
       const Eigen::MatrixXd all =
@@ -378,11 +378,11 @@ class ScoreSums {
     if (part.shares_noise)
       part.noise[flight] = flights.residual(flight, solution_.values) - misfit_.at(part.states[flight]);
     if (!part.by_doubt.empty())
-      scores.doubt(Eigen::all, part.doubt_places) = slope * left.transpose() * part.by_doubt[flight];
-    for (Eigen::Index i = 0; i < left.rows(); ++i) {
+      scores.doubt(Eigen::all, part.doubt_places) = slope * part_columns.transpose() * part.by_doubt[flight];
+    for (Eigen::Index i = 0; i < part_columns.rows(); ++i) {
       Eigen::MatrixXd& block = scores.blocks[numbers_(flight, time[static_cast<std::size_t>(i)])];
-      block.leftCols(size_) += slope * left.row(i).transpose() * columns.row(i);
-      block.col(size_) += weight[i] * rows.innovations[i] * left.row(i).transpose();
+      block.leftCols(size_) += slope * part_columns.row(i).transpose() * columns.row(i);
+      block.col(size_) += weight[i] * rows.innovations[i] * part_columns.row(i).transpose();
     }
     return scores;
   }

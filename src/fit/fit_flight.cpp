@@ -14,21 +14,21 @@ namespace {
 
 /// Neutral values of the coefficients of effects that the model and the reference's model share, by their
 /// indices among the parameters of residuals.
-std::map<std::size_t, double> alike_in(const FitTask& task) {
-  std::map<std::size_t, double> alike;
+std::map<std::size_t, double> neutral_parameters(const FitTask& task) {
+  std::map<std::size_t, double> result;
   const ModelDefinition* const other = task.reference.model();
-  if (other == nullptr) return alike;
+  if (other == nullptr) return result;
   for (const std::string& effect : task.options.alike) {
     const std::vector<double> neutral = neutral_effect(effect).parameters;
     const auto add = [&](const ModelDefinition& model, std::size_t first) {
       const std::optional<std::size_t> position = first_parameter_of(model, effect);
       for (std::size_t i = 0; position && i < neutral.size(); ++i)
-        alike.emplace(first + *position + i, neutral[i]);
+        result.emplace(first + *position + i, neutral[i]);
     };
     add(task.model, 0);
     add(*other, parameter_count(task.model.model));
   }
-  return alike;
+  return result;
 }
 
 /// Number of first fit parameters that are also the first parameters of the residuals.
@@ -44,7 +44,7 @@ Eigen::VectorXd flight_parameters(const Residuals& residuals, const FitTask& tas
   Eigen::VectorXd coefficients = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
   const Eigen::Index shared = as_index(shared_parameters(residuals, task));
   coefficients.head(shared) = parameters.head(shared);
-  for (const auto& [position, neutral] : alike_in(task)) coefficients[as_index(position)] = neutral;
+  for (const auto& [position, neutral] : neutral_parameters(task)) coefficients[as_index(position)] = neutral;
   return coefficients;
 }
 
@@ -61,11 +61,12 @@ Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTa
 Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
                             const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
                             const std::vector<std::size_t>& requested, bool as_recorded) {
-  const std::map<std::size_t, double> alike = alike_in(task);
+  const std::map<std::size_t, double> neutral = neutral_parameters(task);
   std::vector<std::size_t> known;
   std::vector<std::size_t> columns;
   for (std::size_t k = 0; k < requested.size(); ++k) {
-    if (alike.count(requested[k]) != 0 || requested[k] >= shared_parameters(rows.residuals(), task)) continue;
+    if (neutral.count(requested[k]) != 0 || requested[k] >= shared_parameters(rows.residuals(), task))
+      continue;
     known.push_back(requested[k]);
     columns.push_back(k);
   }
@@ -79,16 +80,20 @@ Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
                      const Eigen::VectorXd& parameters, std::vector<Mask>& mask)
     : task_(&task),
-      moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
-      rows_(residuals_at(moving_ ? moving_ : std::move(samples), task, setup.values, mask), task.model,
-            task.reference, {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}) {
-  if (!moving_) return;
+      recomputed_samples_(samples->model.moving.empty() ? nullptr
+                                                        : std::make_shared<FlightSamples>(*samples)),
+      rows_(residuals_at(recomputed_samples_ ? recomputed_samples_ : std::move(samples), task, setup.values,
+                         mask),
+            task.model, task.reference,
+            {Inputs::recorded, setup.requested, task.options.training_share, setup.regimes}) {
+  if (!recomputed_samples_) return;
   const Eigen::VectorXd coefficients = flight_parameters(residuals(), task, parameters);
   // The high-rate airspeed remains that of the input model.
-  FastSeries& speed = moving_->model.along_beam;
+  FastSeries& speed = recomputed_samples_->model.along_beam;
   if (speed.in_record == 1 && !speed.values.empty())
-    speed.values = airspeed_along_beam(task.model, moving_->model, coefficients.data());
-  find_moving_columns(task.model.model, coefficients.data(), moving_->time, moving_->step, moving_->model);
+    speed.values = airspeed_along_beam(task.model, recomputed_samples_->model, coefficients.data());
+  find_moving_columns(task.model.model, coefficients.data(), recomputed_samples_->time,
+                      recomputed_samples_->step, recomputed_samples_->model);
 }
 
 bool FitFlight::masks_change_at(const Eigen::VectorXd& parameters) const {

@@ -109,10 +109,10 @@ bool FitFlights::rows_are_linear() const {
 }
 
 bool FitFlights::uses_fixed_jacobian() const {
-  return has_moving_columns() || keeps_derivatives(task_.reference) || joint_.size() > 1;
+  return has_parameter_dependent_columns() || keeps_derivatives(task_.reference) || joint_.size() > 1;
 }
 
-bool FitFlights::has_moving_columns() const {
+bool FitFlights::has_parameter_dependent_columns() const {
   const std::vector<ModelEffect>& effects = task_.model.model.effects;
   return std::any_of(effects.begin(), effects.end(),
                      [](const ModelEffect& effect) { return memory_of(effect).of != Quantity::count; });
@@ -130,19 +130,19 @@ void FitFlights::visit(const std::function<void(std::size_t, const FitFlight&)>&
 
 std::vector<Eigen::MatrixXd> FitFlights::of_local(
     const std::function<Eigen::MatrixXd(std::size_t, const FitFlight&)>& make) {
-  std::vector<Eigen::MatrixXd> own(count());
+  std::vector<Eigen::MatrixXd> result(count());
   partition().attempt(
-      [&] { visit([&](std::size_t number, const FitFlight& fit) { own[number] = make(number, fit); }); });
-  return own;
+      [&] { visit([&](std::size_t number, const FitFlight& fit) { result[number] = make(number, fit); }); });
+  return result;
 }
 
 std::vector<Eigen::VectorXd> FitFlights::of_bins(
     const std::function<Eigen::VectorXd(std::size_t)>& make) const {
-  std::vector<Eigen::VectorXd> own;
+  std::vector<Eigen::VectorXd> result;
   for (std::size_t flight = 0; flight < count(); ++flight) {
-    if (partition().is_local(flight)) own.push_back(make(flight));
+    if (partition().is_local(flight)) result.push_back(make(flight));
   }
-  return own;
+  return result;
 }
 
 void FitFlights::evaluate(std::size_t flight, const FitFlight& fit) {
@@ -219,10 +219,10 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       for (const double innovation : rows.innovations) part.cost += 0.5 * loss(innovation)[0];
       const Eigen::VectorXd weight = loss.weights(rows.innovations);
       const Eigen::MatrixXd all = side_by_side(rows.columns(Eigen::all, indices), rows.innovations);
-      const Eigen::MatrixXd left = rows.without_offsets(all, weight);
-      part.absorbed = (all - left).leftCols(fitted).cwiseAbs2().transpose() * weight;
+      const Eigen::MatrixXd without_offsets = rows.without_offsets(all, weight);
+      part.absorbed = (all - without_offsets).leftCols(fitted).cwiseAbs2().transpose() * weight;
       TriangularFactor factor(fitted + 1);
-      factor.add(left, weight.cwiseSqrt());
+      factor.add(without_offsets, weight.cwiseSqrt());
       part.factor = factor.factor();
       return part;
     };
@@ -242,9 +242,9 @@ Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters)
   const auto factor = [&](std::size_t, const FitFlight& fit) {
     const Eigen::MatrixXd rows =
         sample_rows(fit.linear_rows(), task_, fit.kept(), parameters, setup_.requested, true);
-    TriangularFactor own(rows.cols());
-    own.add(rows, Eigen::VectorXd::Ones(rows.rows()));
-    return own.factor();
+    TriangularFactor of_flight(rows.cols());
+    of_flight.add(rows, Eigen::VectorXd::Ones(rows.rows()));
+    return of_flight.factor();
   };
   TriangularFactor sum(requested() + 1);
   for (const Eigen::MatrixXd& part : of_each(factor, parameters)) sum.add(part);
@@ -266,14 +266,14 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const MisfitIn
   for (FitFlights* const each : joint()) {
     BinnedFit fit;
     fit.columns = [&](std::size_t flight) { return each->columns(flight).leftCols(requested()); };
-    fit.left = [&](std::size_t flight) -> Eigen::VectorXd {
+    fit.residual = [&](std::size_t flight) -> Eigen::VectorXd {
       if (!misfit || !sees_law(*each)) return each->residual(flight, parameters);
       return each->residual(flight, parameters) - misfit(*each, flight);
     };
     fit.state = digest_of(serialized(parameters));
     each->noise_ = noise_of_flights(partition(), each->binned_, fit,
-                                    [&](const auto& bins, const auto& some, const auto& left) {
-                                      return find_noise(bins, some, left, task_.threads()).model;
+                                    [&](const auto& bins, const auto& some, const auto& residuals) {
+                                      return find_noise(bins, some, residuals, task_.threads()).model;
                                     });
   }
 }
@@ -287,9 +287,9 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters) {
   std::vector<Eigen::VectorXd> innovations;
   for (FitFlights* const each : joint()) {
     each->evaluate_at(parameters);
-    for (const Eigen::VectorXd& own :
+    for (const Eigen::VectorXd& of_flight :
          each->of_bins([&](std::size_t flight) { return each->rows(flight, parameters, {}).innovations; }))
-      innovations.push_back(own);
+      innovations.push_back(of_flight);
   }
   return robust_deviation(partition().comm(), innovations);
 }

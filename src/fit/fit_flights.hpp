@@ -75,7 +75,7 @@ class FitFlight {
 
  private:
   const FitTask* task_;
-  std::shared_ptr<FlightSamples> moving_;  // samples of `rows_`, if columns depend on coefficients
+  std::shared_ptr<FlightSamples> recomputed_samples_;  // of `rows_`, if columns depend on coefficients
   LinearRows rows_;
 };
 
@@ -144,7 +144,7 @@ class FitFlights {
   bool uses_fixed_jacobian() const;
 
   /// True if columns depend on a coefficient, so that a first solution from a distant start is not final.
-  bool has_moving_columns() const;
+  bool has_parameter_dependent_columns() const;
 
   std::size_t count() const { return task_.flights.size(); }
 

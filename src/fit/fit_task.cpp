@@ -91,11 +91,11 @@ void find_parameters(FitTask& task) {
 /// Covariance of all parameters from the standard errors and covariances in the files.
 Eigen::MatrixXd stated_covariance_of(const FitTask& task) {
   const Eigen::Index size = task.start.size();
-  const Eigen::MatrixXd own = stated_covariance(task.model);
+  const Eigen::MatrixXd of_model = stated_covariance(task.model);
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(size, size);
-  all.topLeftCorner(own.rows(), own.cols()) = own;
+  all.topLeftCorner(of_model.rows(), of_model.cols()) = of_model;
   if (task.reference.model() != nullptr) {
-    const Eigen::Index rest = size - own.rows();
+    const Eigen::Index rest = size - of_model.rows();
     all.bottomRightCorner(rest, rest) = stated_covariance(*task.reference.model());
   }
   return all;
@@ -107,9 +107,9 @@ constexpr std::size_t passes_expected = 40;
 
 std::vector<std::vector<std::size_t>> fit_stages(const FitTask& task) {
   const std::vector<FitParameter>& parameters = task.parameters;
-  std::vector<bool> left;
-  for (const FitParameter& parameter : parameters) left.push_back(!parameter.fixed);
-  if (std::find(left.begin(), left.end(), true) == left.end()) {
+  std::vector<bool> remaining;
+  for (const FitParameter& parameter : parameters) remaining.push_back(!parameter.fixed);
+  if (std::find(remaining.begin(), remaining.end(), true) == remaining.end()) {
     throw Error(
         Error::Code::usage,
         fmt::format("model '{}': no coefficient is free; add an effect, or free one with --free EFFECT",
@@ -120,17 +120,17 @@ std::vector<std::vector<std::size_t>> fit_stages(const FitTask& task) {
     std::vector<std::size_t>& requested = result.emplace_back();
     for (const std::string& name : stage.parameters) {
       for (const std::size_t p : indices_of(parameters, name, "--stage")) {
-        if (!left[p])
+        if (!remaining[p])
           throw Error(Error::Code::usage,
                       fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters[p].name));
-        left[p] = false;
+        remaining[p] = false;
         requested.push_back(p);
       }
     }
   }
   std::vector<std::size_t>& rest = result.emplace_back();
-  for (std::size_t p = 0; p < left.size(); ++p) {
-    if (left[p]) rest.push_back(p);
+  for (std::size_t p = 0; p < remaining.size(); ++p) {
+    if (remaining[p]) rest.push_back(p);
   }
   return result;
 }
@@ -147,10 +147,10 @@ FitTask fit_task(const ModelDefinition& model, const References& references, con
   };
   for (std::size_t i = 1; i < references.size(); ++i) {
     FitTask with{model, *references[i], options, flights, task.parameters, task.start, task.doubt, [] {}};
-    const ModelDefinition* const own = reference.model();
+    const ModelDefinition* const first = reference.model();
     const ModelDefinition* const other = references[i]->model();
-    with.shares_system = own != nullptr && other != nullptr && own->model.name == other->model.name &&
-                         own->variables == other->variables;
+    with.shares_system = first != nullptr && other != nullptr && first->model.name == other->model.name &&
+                         first->variables == other->variables;
     task.further.push_back(std::move(with));
   }
   return task;

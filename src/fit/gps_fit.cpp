@@ -183,11 +183,11 @@ class GpsSolver {
       throw Error(Error::Code::samples,
                   "wind and height have no sample in these flights, because they need more than 40 m/s; omit "
                   "them, or give other flights");
-    eliminate_own(blocks);
+    eliminate_flight_nuisances(blocks);
   }
 
-  void eliminate_own(const std::vector<BlockProducts>& flights) {
-    const Eigen::Index own = gps_nuisance_count - gps_shared_nuisances;
+  void eliminate_flight_nuisances(const std::vector<BlockProducts>& flights) {
+    const Eigen::Index flight_nuisances = gps_nuisance_count - gps_shared_nuisances;
     const Eigen::Index size = shared();
     matrix_ = Eigen::MatrixXd::Zero(size, size);
     right_ = Eigen::VectorXd::Zero(size);
@@ -198,25 +198,27 @@ class GpsSolver {
     for (const BlockProducts& blocks : flights) {
       if (blocks.empty()) continue;
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1 + fixed());
-      sum.diagonal().segment(size, own) = nuisance_deviation_.tail(own).cwiseAbs2().cwiseInverse();
+      sum.diagonal().segment(size, flight_nuisances) =
+          nuisance_deviation_.tail(flight_nuisances).cwiseAbs2().cwiseInverse();
       for (const auto& [block, of_references] : blocks) {
         for (const auto& [reference, products] : of_references) sum += products;
       }
-      // Rows minus the part explained by the flight's nuisances: columns less own times these.
+      // Rows minus the part explained by the flight's nuisances: columns less the nuisances' times these.
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
-      without.middleRows(size, own) = -symmetric_solution(
-          sum.block(size, size, own, own), Eigen::MatrixXd(sum.block(size, 0, own, all() + 1) * without));
+      without.middleRows(size, flight_nuisances) =
+          -symmetric_solution(sum.block(size, size, flight_nuisances, flight_nuisances),
+                              Eigen::MatrixXd(sum.block(size, 0, flight_nuisances, all() + 1) * without));
       const std::int64_t middle = (blocks.begin()->first + blocks.rbegin()->first) / 2;
       std::vector<Eigen::MatrixXd> halves(2 * flights_.size(), Eigen::MatrixXd::Zero(size + 1, size + 1));
       for (const auto& [block, of_references] : blocks) {
         products_.emplace_back(Eigen::MatrixXd::Zero(size + 1, size + 1));
         for (const auto& [reference, products] : of_references) {
-          const Eigen::MatrixXd own_products = without.transpose() * products.leftCols(all() + 1) * without;
-          products_.back() += own_products;
-          references[reference] += own_products;
-          halves[2 * reference + (block > middle ? 1 : 0)] += own_products;
+          const Eigen::MatrixXd reduced = without.transpose() * products.leftCols(all() + 1) * without;
+          products_.back() += reduced;
+          references[reference] += reduced;
+          halves[2 * reference + (block > middle ? 1 : 0)] += reduced;
         }
       }
       for (std::size_t r = 0; r < flights_.size(); ++r) {
@@ -224,9 +226,9 @@ class GpsSolver {
         if (halves[2 * r].isZero(0.0) || halves[2 * r + 1].isZero(0.0)) continue;
         parts_.insert(parts_.end(), {halves[2 * r], halves[2 * r + 1]});
       }
-      const Eigen::MatrixXd left = without.transpose() * sum.leftCols(all() + 1) * without;
-      matrix_ += left.topLeftCorner(size, size);
-      right_ += left.col(size).head(size);
+      const Eigen::MatrixXd reduced_sum = without.transpose() * sum.leftCols(all() + 1) * without;
+      matrix_ += reduced_sum.topLeftCorner(size, size);
+      right_ += reduced_sum.col(size).head(size);
       by_fixed_ += without.leftCols(size).transpose() * sum.rightCols(fixed());
     }
     if (references.size() > 1 || !is_alone_)
@@ -365,9 +367,9 @@ class GpsSolver {
     // Change of the solution without each block of five minutes. Scores of the blocks would understate the
     // error if one block decides, for example the only climb.
     Eigen::VectorXd residual_weights(shared() + 1);
-    Eigen::VectorXd left = change_;
-    left.head(count_).setZero();
-    residual_weights << -left, 1.0;
+    Eigen::VectorXd nuisance_change = change_;
+    nuisance_change.head(count_).setZero();
+    residual_weights << -nuisance_change, 1.0;
     const Eigen::MatrixXd drawn = identity() - posterior_ * matrix_;
     Eigen::MatrixXd sandwich = drawn * prior_ * drawn.transpose();
     for (const Eigen::MatrixXd& products : products_) {

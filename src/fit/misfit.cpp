@@ -60,17 +60,17 @@ struct Posterior {
   double gain;  ///< logarithm of the restricted likelihood over that without bumps
 };
 
-/// @param left products of the whitened rows (bumps, residual) after elimination of the derivatives, which
+/// @param products of the whitened rows (bumps, residual) after elimination of the derivatives, which
 /// have no prior
 /// @param variance of the height of each bump before
-Posterior posterior_of(const Eigen::MatrixXd& left, const Eigen::VectorXd& variance) {
+Posterior posterior_of(const Eigen::MatrixXd& products, const Eigen::VectorXd& variance) {
   const Eigen::Index count = variance.size();
   const Eigen::VectorXd size = variance.cwiseSqrt();
-  Eigen::MatrixXd inner = size.asDiagonal() * left.topLeftCorner(count, count) * size.asDiagonal();
+  Eigen::MatrixXd inner = size.asDiagonal() * products.topLeftCorner(count, count) * size.asDiagonal();
   inner.diagonal().array() += 1.0;
   const Cholesky factor(inner);
   const Eigen::MatrixXd covariance = size.asDiagonal() * factor.solve(Eigen::MatrixXd(size.asDiagonal()));
-  const Eigen::VectorXd right = left.col(count).head(count);
+  const Eigen::VectorXd right = products.col(count).head(count);
   const Eigen::VectorXd mean = covariance * right;
   return {covariance, mean, 0.5 * (right.dot(mean) - factor.log_determinant())};
 }
@@ -92,7 +92,7 @@ double weight_of(const Posterior& posterior, const Eigen::VectorXd& variance, do
 /// rms of the residual: the variance of a state is the sum of squares of its heights over the number of them
 /// that the flights determine (MacKay 1992, Neural Computation 4, 415). Successive substitution ends at the
 /// same values from any start nearby, unlike a search without derivatives.
-Eigen::VectorXd variances_of(const Eigen::MatrixXd& left, double rms) {
+Eigen::VectorXd variances_of(const Eigen::MatrixXd& products, double rms) {
   constexpr int max_rounds = 500;
   // Relative to the rms of the residual, of which the misfit is a part. Without this bound a narrow feature,
   // which requires large heights of alternating signs, makes the stated error of the slope of the law several
@@ -101,7 +101,7 @@ Eigen::VectorXd variances_of(const Eigen::MatrixXd& left, double rms) {
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
   for (int round = 0; round < max_rounds; ++round) {
-    const Posterior posterior = posterior_of(left, variance);
+    const Posterior posterior = posterior_of(products, variance);
     double change = 0.0;
     for (Eigen::Index s = 0; s < states; ++s) {
       const Eigen::Index first = s * bumps;
@@ -214,11 +214,11 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   const std::vector<Eigen::MatrixXd>& in_bins = states_of_reference[&flights];
   misfit.bumps = MisfitBasis(partition, in_bins);
   if (flights.bins() < min_bins) return misfit;
-  const Eigen::Index own = as_index(flights.setup().requested.size());
+  const Eigen::Index requested = as_index(flights.setup().requested.size());
   const Eigen::Index count = MisfitBasis::count();
   const auto rows_of = [&](std::size_t flight) {
-    Eigen::MatrixXd all(in_bins[flight].rows(), own + count + 1);
-    all << flights.columns(flight).leftCols(own), misfit.bumps(in_bins[flight]),
+    Eigen::MatrixXd all(in_bins[flight].rows(), requested + count + 1);
+    all << flights.columns(flight).leftCols(requested), misfit.bumps(in_bins[flight]),
         flights.residual(flight, solution.values);
     return all;
   };
@@ -228,7 +228,7 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   });
   const auto bins = partition.all_reduce_flights<double>(
       [&](std::size_t flight) { return static_cast<double>(in_bins[flight].rows()); });
-  const double rms = std::sqrt(plain(own + count, own + count) / bins);
+  const double rms = std::sqrt(plain(requested + count, requested + count) / bins);
   constexpr int rounds = 2;
   for (int round = 0; round < rounds; ++round) {
     const auto white = partition.all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
@@ -236,16 +236,18 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
       return Eigen::MatrixXd(all.transpose() * all);
     });
     if (!(rms > 0.0) || !white.allFinite()) return misfit;
-    const Eigen::MatrixXd white_left = products_after(white, own);
-    const Eigen::VectorXd variance = variances_of(white_left, rms);
-    const Posterior posterior = posterior_of(white_left, variance);
+    const Eigen::MatrixXd white_after = products_after(white, requested);
+    const Eigen::VectorXd variance = variances_of(white_after, rms);
+    const Posterior posterior = posterior_of(white_after, variance);
     const double weight = weight_of(posterior, variance, rms);
     misfit.variance = weight * variance;
     misfit.height = weight * posterior.mean;
-    const Eigen::MatrixXd left = products_after(plain, own).topLeftCorner(count, count);
-    misfit.left = std::sqrt(
+    const Eigen::MatrixXd plain_after = products_after(plain, requested).topLeftCorner(count, count);
+    misfit.rms = std::sqrt(
         weight *
-        std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /
+        std::max(
+            0.0,
+            (plain_after * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /
         bins);
     flights.measure_noise(solution.values, [&](const FitFlights& reference, std::size_t flight) {
       return misfit.at(states_of_reference.at(&reference)[flight]);
@@ -253,9 +255,10 @@ Misfit find_misfit(FitFlights& flights, const Solution& solution) {
   }
   misfit.between_flights =
       variance_between(partition.all_gather_flights<std::pair<double, double>>([&](std::size_t flight) {
-        const Eigen::VectorXd left = flights.residual(flight, solution.values) - misfit.at(in_bins[flight]);
-        if (left.size() == 0) return std::pair(0.0, 0.0);
-        return std::pair(left.mean(),
+        const Eigen::VectorXd residual =
+            flights.residual(flight, solution.values) - misfit.at(in_bins[flight]);
+        if (residual.size() == 0) return std::pair(0.0, 0.0);
+        return std::pair(residual.mean(),
                          1.0 / information_about_mean(flights.bins(flight), flights.noise(flight)));
       }));
   return misfit;

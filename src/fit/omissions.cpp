@@ -38,8 +38,8 @@ double SquaredResiduals::at(const Eigen::VectorXd& values) const {
 
 double SquaredResiduals::minimum() const {
   if (!is_linear_ || flights_.task().options.fit_reference) return nan;
-  const double left = factor_(factor_.rows() - 1, factor_.cols() - 1);
-  return left * left;
+  const double residual_norm = factor_(factor_.rows() - 1, factor_.cols() - 1);
+  return residual_norm * residual_norm;
 }
 
 std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, const FitSums& sums,
@@ -101,8 +101,8 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
       return squares.at(values);
     };
     const double from_fit = refitted(true);
-    const double left = has_minimum ? std::fmin(from_fit, refitted(false)) : from_fit;
-    result.push_back({effect, sums.rms_of(left), sums.r_squared(left)});
+    const double sum_of_squares = has_minimum ? std::fmin(from_fit, refitted(false)) : from_fit;
+    result.push_back({effect, sums.rms_of(sum_of_squares), sums.r_squared(sum_of_squares)});
   }
   return result;
 }

@@ -83,14 +83,14 @@ PriorRows prior_rows(const FitTask& task, const std::vector<std::size_t>& reques
   add_rows_of_added(task, requested, prior);
   for (const SurfaceRoughness& surface : task.surfaces) {
     std::vector<Eigen::Index> columns;
-    std::vector<Eigen::Index> own;
+    std::vector<Eigen::Index> coefficients;
     for (std::size_t k = 0; k < requested.size(); ++k) {
       if (!surface.has(requested[k])) continue;
       columns.push_back(as_index(k));
-      own.push_back(as_index(requested[k] - surface.first));
+      coefficients.push_back(as_index(requested[k] - surface.first));
     }
-    if (own.empty()) continue;
-    const Eigen::MatrixXd penalty = std::sqrt(surface.inflation) * surface.rows()(Eigen::all, own);
+    if (coefficients.empty()) continue;
+    const Eigen::MatrixXd penalty = std::sqrt(surface.inflation) * surface.rows()(Eigen::all, coefficients);
     add_rows(prior, columns, penalty, surface.inflation);
     prior.centre(columns).setZero();
   }

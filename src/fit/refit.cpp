@@ -42,17 +42,18 @@ namespace {
 /// law of the second system.
 void require_other_pressures(const FlightSet& flights, const ModelDefinition& model,
                              const References& references) {
-  const std::string own = model.variable_of(Quantity::static_pressure);
+  const std::string pressure = model.variable_of(Quantity::static_pressure);
   for (const std::shared_ptr<const Reference>& reference : references) {
     const std::string other = circular_pressure(flights, model, *reference);
     // A pressure that the archive computed from the model's is a law, which a fit may copy.
-    if (other.empty() || (reference->model() == nullptr && other != own)) continue;
+    if (other.empty() || (reference->model() == nullptr && other != pressure)) continue;
     throw Error(
         Error::Code::usage,
         fmt::format("reference {}: its static pressure {} {} that of the model '{}', so a fit would be "
                     "circular; give a system with an independent static pressure",
                     reference->name(), other,
-                    other == own ? std::string("is") : "is computed from " + own + ",", model.model.name));
+                    other == pressure ? std::string("is") : "is computed from " + pressure + ",",
+                    model.model.name));
   }
 }
 
@@ -158,7 +159,7 @@ void fit_surfaces(FitTask& task, FitFlights& flights, Solution& solution) {
 }
 
 /// The subset of parameters that belongs to the model, not to the reference.
-std::vector<std::size_t> own_parameters(const FitTask& task, std::vector<std::size_t> parameters) {
+std::vector<std::size_t> parameters_of_model(const FitTask& task, std::vector<std::size_t> parameters) {
   const std::size_t count = parameter_count(task.model.model);
   parameters.erase(std::remove_if(parameters.begin(), parameters.end(),
                                   [count](std::size_t parameter) { return parameter >= count; }),
@@ -173,9 +174,9 @@ Fitted fit_in_stages(FitTask& task) {
   for (int round = 0; round < max_masks; ++round) {
     fitted.flights = std::make_shared<FitFlights>(task, fitted.setup());
     // From there steps are short: a minimum of delta-p makes the residuals of two systems non-linear.
-    const std::vector<std::size_t> own = own_parameters(task, fitted.parameters);
-    if (task.options.fit_reference && round == 0 && !own.empty())
-      solution = solve(*fitted.flights, std::move(solution), own);
+    const std::vector<std::size_t> of_model = parameters_of_model(task, fitted.parameters);
+    if (task.options.fit_reference && round == 0 && !of_model.empty())
+      solution = solve(*fitted.flights, std::move(solution), of_model);
     solution = solve(*fitted.flights, std::move(solution), fitted.parameters);
     if (!task.surfaces.empty()) fit_surfaces(task, *fitted.flights, solution);
     // The masks are those of the solution, so that the start does not decide.
@@ -378,7 +379,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
   result.masks = flights.masks();
   result.jackknife_parts = covariance.blocks;
   const BeforeAndAfter compared =
-      before_and_after(flights, solution.values, covariance.by_flights, misfit.left, result);
+      before_and_after(flights, solution.values, covariance.by_flights, misfit.rms, result);
   task.report_progress();
   const FitSums& sums = compared.sums;
   result.samples = sums.after.samples;
@@ -404,7 +405,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
       result.surfaces.push_back({surface.effect, surface.size, surface.degrees_of_freedom});
   }
   result.drift_rms = flights.drift_rms();
-  result.left = by_gps_alone ? nan : misfit.left;
+  result.left = by_gps_alone ? nan : misfit.rms;
   result.between_flights = by_gps_alone ? nan : std::sqrt(misfit.between_flights);
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.rejection_reason =
@@ -508,15 +509,15 @@ std::vector<std::vector<FittedParameter>> refit_per_flight(const FlightSet& flig
                                                            const References& references,
                                                            const RefitOptions& options) {
   const FlightPartition& partition = flights.partition();
-  RefitOptions own = options;
-  own.threads = Workers(flights.comm(), options.threads).threads;
-  own.holdout = FlightSet();
-  own.progress = nullptr;
+  RefitOptions options_of_flight = options;
+  options_of_flight.threads = Workers(flights.comm(), options.threads).threads;
+  options_of_flight.holdout = FlightSet();
+  options_of_flight.progress = nullptr;
   std::size_t done = 0;
   return partition.all_gather_flights<std::vector<FittedParameter>>([&](std::size_t number) {
     std::vector<FittedParameter> found;
     try {
-      found = refit(flights.only(number), model, references, own).parameters;
+      found = refit(flights.only(number), model, references, options_of_flight).parameters;
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
     }

@@ -168,7 +168,7 @@ class Solver {
       refine();
       // The noise is that of residuals at the solution.
       constexpr int maximum = 5;
-      for (int round = 0; round < maximum && flights_.has_moving_columns(); ++round) {
+      for (int round = 0; round < maximum && flights_.has_parameter_dependent_columns(); ++round) {
         const Eigen::VectorXd before = unknowns();
         flights_.prepare(solution_.values);
         refine();

@@ -27,23 +27,23 @@ struct Determined {
 /// @param all products of (derivatives, residual) with each other, weighted as least squares weighs them
 /// @param noise covariance of the products of the derivatives with the noise
 Determined determined(const Eigen::MatrixXd& all, const Eigen::MatrixXd& noise, const PriorRows& prior,
-                      double unit, const std::vector<Eigen::Index>& own) {
+                      double unit, const std::vector<Eigen::Index>& columns) {
   const Eigen::Index count = noise.cols();
   std::vector<Eigen::Index> others;
   for (Eigen::Index k = 0; k < count; ++k) {
-    if (std::find(own.begin(), own.end(), k) == own.end()) others.push_back(k);
+    if (std::find(columns.begin(), columns.end(), k) == columns.end()) others.push_back(k);
   }
   const Eigen::VectorXd y = all.col(count).head(count);
-  Determined found{all(own, own), noise(own, own), y(own)};
+  Determined found{all(columns, columns), noise(columns, columns), y(columns)};
   if (others.empty()) return found;
   Eigen::MatrixXd of_others = all(others, others);
   const Eigen::MatrixXd drawn = prior.rows(Eigen::all, others);
   of_others += unit * drawn.transpose() * drawn;
-  const Eigen::MatrixXd across = all(others, own);
-  const Eigen::MatrixXd taken = information_inverse(of_others) * across;  // others by own
+  const Eigen::MatrixXd across = all(others, columns);
+  const Eigen::MatrixXd taken = information_inverse(of_others) * across;  // rows of the others
   found.information -= across.transpose() * taken;
   found.right -= taken.transpose() * y(others);
-  const Eigen::MatrixXd shared = noise(own, others) * taken;
+  const Eigen::MatrixXd shared = noise(columns, others) * taken;
   found.noise += taken.transpose() * noise(others, others) * taken - shared - shared.transpose();
   return found;
 }
@@ -84,8 +84,8 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
   const Eigen::Index count = as_index(requested.size());
   const auto all = flights.partition().all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
     const FitRows rows = flights.rows(flight, solution.values, {});
-    const Eigen::MatrixXd own = side_by_side(rows.columns.leftCols(count), rows.innovations);
-    return Eigen::MatrixXd(own.transpose() * own);
+    const Eigen::MatrixXd with_innovations = side_by_side(rows.columns.leftCols(count), rows.innovations);
+    return Eigen::MatrixXd(with_innovations.transpose() * with_innovations);
   });
   const auto noise = flights.partition().all_reduce_flights<Eigen::MatrixXd>([&](std::size_t flight) {
     const Eigen::MatrixXd weighted =
@@ -94,17 +94,17 @@ bool find_roughness(FitFlights& flights, const Solution& solution, std::vector<S
   });
   bool changed = false;
   for (SurfaceRoughness& surface : surfaces) {
-    std::vector<Eigen::Index> own;
+    std::vector<Eigen::Index> columns;
     std::vector<Eigen::Index> coefficients;
     for (std::size_t k = 0; k < requested.size(); ++k) {
       if (!surface.has(requested[k])) continue;
-      own.push_back(as_index(k));
+      columns.push_back(as_index(k));
       coefficients.push_back(as_index(requested[k] - surface.first));
     }
-    if (own.empty() || !all.allFinite()) continue;
-    Determined found = determined(all, noise, prior_rows(flights.task(), requested), unit, own);
+    if (columns.empty() || !all.allFinite()) continue;
+    Determined found = determined(all, noise, prior_rows(flights.task(), requested), unit, columns);
     // About zero, not about the solution.
-    found.right -= found.information * solution.values(requested)(own);
+    found.right -= found.information * solution.values(requested)(columns);
     const auto precision = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
       return rows(Eigen::all, coefficients).transpose() * rows(Eigen::all, coefficients);
     };

@@ -86,7 +86,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   const auto refit_options_for = [&](const TrialModel& trial) {
     RefitOptions refit_with = options.refit;
-    refit_with.alike = trial.alike;
+    refit_with.alike = trial.shared_effects;
     refit_with.added = added_to(trial.file);
     return refit_with;
   };
@@ -106,20 +106,21 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("diagnosing", trial.file);
-    Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
+    Diagnosis diagnosis =
+        diagnose(flights, trial.file, with_shared_effects(ordered, trial, variables), diagnose_with);
     if (!diagnose_with.series_of)  // pictures of all steps show the same flights
       diagnose_with.series_of = diagnosis.flights_with_records();
     return diagnosis;
   };
   loop.add = [&](const TrialModel& trial, const AddedEffect& added) {
-    TrialModel extended{add_effects(trial.file, {added.effect}, variables), trial.alike};
+    TrialModel extended{add_effects(trial.file, {added.effect}, variables), trial.shared_effects};
     const std::vector<std::string> names_of_parameters = parameter_names(added.effect);
     for (std::size_t p = 0; p < names_of_parameters.size(); ++p) {
       // The flights cannot separate a held parameter from others.
       if (std::count(added.fixed.begin(), added.fixed.end(), names_of_parameters[p]) > 0)
         extended.file.fits.back()[p].fixed = true;
     }
-    if (added.is_alike) extended.alike.push_back(added.effect.id);
+    if (added.is_shared) extended.shared_effects.push_back(added.effect.id);
     return extended;
   };
   loop.try_models = [&](const std::vector<TrialModel>& models) {
@@ -175,8 +176,8 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
     }
     candidates.push_back(std::move(candidate));
   }
-  for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas))
-    rivals.push_back(std::move(left));
+  for (WhatIfCandidate& candidate : what_if_candidates(improvement.steps.back().diagnosis, options.formulas))
+    rivals.push_back(std::move(candidate));
   for (WhatIfCandidate& rival : rivals) {
     const bool is_new = std::none_of(candidates.begin(), candidates.end(),
                                      [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });

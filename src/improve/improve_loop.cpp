@@ -120,7 +120,7 @@ class ForwardSelection {
 
  private:
   const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
-  TrialModel top() const { return {result_.fit.model, alike_}; }
+  TrialModel top() const { return {result_.fit.model, shared_effects_}; }
 
   /// Index among the rivals of a step; empty if no rival is applied.
   using AppliedRival = std::optional<std::size_t>;
@@ -183,7 +183,7 @@ class ForwardSelection {
   }
 
   /// Measures the change of static pressure by the rivals of a step, with the other effects as after the
-  /// last step. The first rival stays if all are alike.
+  /// last step. The first rival stays if all are similar.
   AppliedRival choice_of(std::size_t index, ImproveStep& step) {
     std::vector<AppliedRival> choices(alternatives_.size(), 0);
     std::vector<TrialModel> models;
@@ -259,7 +259,7 @@ class ForwardSelection {
     ImproveStep step;
     step.added = step.delivered = id;
     step.title = std::string(surface.title);
-    measure(step, fit, delivered_.alike);
+    measure(step, fit, delivered_.shared_effects);
     // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
       step.rms_holdout =
@@ -273,13 +273,13 @@ class ForwardSelection {
         "the residual and identifies no cause",
         id, degrees, figures, offer->compared.chi2_reduction, offer->compared.chi2_reduction_error);
     if (offer->may_be_of_reference) {
-      // The systems are alike, so the surface is as probable on each.
+      // The two systems are equivalent: the surface is as probable on each.
       constexpr double probability = 0.5;
       step.rivals = {{id, probability, offer->static_change},
                      {id_on_other_system("", id), 1.0 - probability}};
       step.rival_error = std::sqrt(1.0 - probability) * offer->static_change;
     }
-    take(std::move(step), std::move(fit), {}, delivered_.alike);
+    take(std::move(step), std::move(fit), {}, delivered_.shared_effects);
     // The uncertainty of the choice among rivals stays part of the stated error.
     add_rival_error(result_.fit.model);
     delivered_.file = result_.fit.model;
@@ -408,7 +408,7 @@ class ForwardSelection {
   /// The first predictor with a formula that is not in the model; nullptr without such a predictor.
   const EmpiricalPredictor* predictor_with_formula(const Unexplained& unexplained) const {
     for (const EmpiricalPredictor& variable : unexplained.variables) {
-      if (!variable.formula.empty() && !has_effect(result_.fit.model, id_of_trace(variable.name)))
+      if (!variable.formula.empty() && !has_effect(result_.fit.model, id_of_predictor(variable.name)))
         return &variable;
     }
     return nullptr;
@@ -440,21 +440,21 @@ class ForwardSelection {
     }
     if (!now.findings.empty())
       return stop(StopReason::in_model, "the effects named by the diagnosis are already in the model");
-    const Unexplained& left = now.unexplained;
+    const Unexplained& unexplained = now.unexplained;
     std::string about = "not correlated with any variable of the files";
-    if (!left.variables.empty()) {
-      about = fmt::format("correlated with {}", left.variables.front().name);
+    if (!unexplained.variables.empty()) {
+      about = fmt::format("correlated with {}", unexplained.variables.front().name);
       about += role_advice();
       if (now.unnamed_roles.empty()) {
-        const EmpiricalPredictor* const traced = predictor_with_formula(left);
-        about += loop_.trace_variables || traced == nullptr
+        const EmpiricalPredictor* const predictor = predictor_with_formula(unexplained);
+        about += loop_.trace_variables || predictor == nullptr
                      ? "; no formula of this variable can be added"
-                     : fmt::format("; --trace-variables adds a formula of {}", traced->name);
+                     : fmt::format("; --trace-variables adds a formula of {}", predictor->name);
       }
     }
     stop(StopReason::unexplained,
-         fmt::format("{} rms is unexplained{}{}, {}", shown(left.rms),
-                     left.regime.empty() ? "" : ", largest in ", left.regime, about));
+         fmt::format("{} rms is unexplained{}{}, {}", shown(unexplained.rms),
+                     unexplained.regime.empty() ? "" : ", largest in ", unexplained.regime, about));
   }
 
   /// Adds the candidate and keeps it if it helps. @return the reason if it does not; empty if it is kept
@@ -482,14 +482,14 @@ class ForwardSelection {
       return fmt::format("rejected: {}, {}; by GPS alone a coefficient must exceed three standard errors", id,
                          coefficients_of(fit, id));
     }
-    const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
+    const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.shared_effects}});
     const TrialComparison fitted = comparison_of(tried, 0, 1, false);
     const TrialComparison held_out = comparison_of(tried, 0, 1, true);
     if (fitted.rms_after > fit_limit * fitted.rms_before && !fitted.is_better()) {
       return fmt::format("rejected: {}, rms of the fit {} with it, {} without it", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
-    measure(step, fit, model.alike);
+    measure(step, fit, model.shared_effects);
     // Without held-out flights, the cross-validation parts of the diagnosis are used. If the model describes
     // more samples than before (flaps extended), both models are compared on these samples.
     const bool same_samples = fit.samples == result_.fit.samples;
@@ -516,12 +516,13 @@ class ForwardSelection {
         shown(after),
         better ? "" : ", not significant; kept because the residual of the fitted flights decreases",
         candidate.caution);
-    take(std::move(step), std::move(fit), std::move(candidate.choices), std::move(model.alike));
+    take(std::move(step), std::move(fit), std::move(candidate.choices), std::move(model.shared_effects));
     return "";
   }
 
   /// Figures of a step. The diagnosis replaces missing held-out samples.
-  void measure(ImproveStep& step, const RefitResult& fit, const std::vector<std::string>& alike) const {
+  void measure(ImproveStep& step, const RefitResult& fit,
+               const std::vector<std::string>& shared_effects) const {
     step.rms_train = fit.rms;
     step.noise_rms = fit.noise_rms;
     step.terms = static_cast<std::size_t>(
@@ -530,20 +531,20 @@ class ForwardSelection {
     if (loop_.has_holdout) {
       step.rms_holdout = held_out_rms(fit);
     } else {
-      step.diagnosis = loop_.diagnose({fit.model, alike});
+      step.diagnosis = loop_.diagnose({fit.model, shared_effects});
       step.rms_holdout = step.diagnosis.residual_rms_held_out;
     }
   }
 
   /// Appends a measured step, with a diagnosis of the remaining residual.
   void take(ImproveStep step, RefitResult fit, std::vector<AddedEffect> choices,
-            std::vector<std::string> alike) {
+            std::vector<std::string> shared_effects) {
     if (result_.steps.empty())
       result_.refitted = fit.model;
     else
       alternatives_.push_back(std::move(choices));
-    alike_ = std::move(alike);
-    if (loop_.has_holdout) step.diagnosis = loop_.diagnose({fit.model, alike_});
+    shared_effects_ = std::move(shared_effects);
+    if (loop_.has_holdout) step.diagnosis = loop_.diagnose({fit.model, shared_effects_});
     std::vector<HeldOutPart>& held_out = step.diagnosis.held_out;
     held_out.clear();
     for (const FlightFit& flight : fit.flights) {
@@ -557,8 +558,8 @@ class ForwardSelection {
   const ImproveLoop& loop_;
   Improvement result_;
   TrialModel given_;
-  std::vector<std::string> alike_{};  // `TrialModel::alike` of the model after the last step
-  TrialModel delivered_{};            // the model to write, with the rivals that were chosen
+  std::vector<std::string> shared_effects_{};  // of the model after the last step
+  TrialModel delivered_{};                     // the model to write, with the rivals that were chosen
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
   std::vector<double> error_of_first_{};          // hPa, of each of them, if the first rival is applied

@@ -25,7 +25,7 @@ struct ImproveLoop {
   bool is_by_gps = false;       ///< the first reference is wind or height
   bool trace_variables = true;  ///< see `ImproveOptions`
   std::size_t max_steps = 8;    ///< maximum number of added effects
-  std::string flights{};        ///< description for the source of a traced formula
+  std::string flights{};        ///< description for the source of the formula of a predictor
 
   /// Selects effects step by step, from `model`. @throws Error as `refit` and `diagnose` do for the initial
   /// model.

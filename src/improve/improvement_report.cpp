@@ -237,7 +237,7 @@ Report improvement_report(const Improvement& improvement, const ModelDefinition&
 
   std::vector<std::string> residuals;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    panels.add_traced(steps[i].diagnosis);
+    panels.add_predictor(steps[i].diagnosis);
     residuals.push_back(numbered("step", i));
     panels.add_column(residuals.back(), "residual, " + step_name(steps[i]), "hPa", steps[i].diagnosis.flights,
                       &FlightDiagnosis::before);

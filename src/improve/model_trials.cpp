@@ -35,25 +35,26 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
 }
 
 /// Model of another system with the shared effects at the coefficients of this model.
-ModelDefinition with_what_is_alike(ModelDefinition other, const TrialModel& model,
+ModelDefinition add_shared_effects(ModelDefinition other, const TrialModel& model,
                                    const std::vector<std::string>& variables) {
-  for (const std::string& id : model.alike) {
-    const ModelEffect& own = *effect_in(model.file, id);
-    if (!has_effect(other, id)) other = add_effects(other, {own}, variables);
+  for (const std::string& id : model.shared_effects) {
+    const ModelEffect& shared = *effect_in(model.file, id);
+    if (!has_effect(other, id)) other = add_effects(other, {shared}, variables);
     for (ModelEffect& effect : other.model.effects) {
-      if (effect.id == id) effect.parameters = own.parameters;
+      if (effect.id == id) effect.parameters = shared.parameters;
     }
   }
   return other;
 }
 
 /// Model without the shared effects: they cancel in comparisons of two systems.
-ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& model) {
+ModelDefinition without_shared_effects(ModelDefinition file, const TrialModel& model) {
   std::vector<ModelEffect>& effects = file.model.effects;
-  const auto is_alike = [&model](const ModelEffect& effect) {
-    return std::find(model.alike.begin(), model.alike.end(), effect.id) != model.alike.end();
+  const auto is_shared = [&model](const ModelEffect& effect) {
+    return std::find(model.shared_effects.begin(), model.shared_effects.end(), effect.id) !=
+           model.shared_effects.end();
   };
-  effects.erase(std::remove_if(effects.begin(), effects.end(), is_alike), effects.end());
+  effects.erase(std::remove_if(effects.begin(), effects.end(), is_shared), effects.end());
   return file;
 }
 
@@ -62,7 +63,7 @@ ModelDefinition without_what_is_alike(ModelDefinition file, const TrialModel& mo
 ModelDefinition union_of(const std::vector<TrialModel>& models) {
   ModelDefinition whole = models.front().file;
   whole.fits.resize(whole.model.effects.size());
-  for (const auto& [model, alike] : models) {
+  for (const auto& [model, shared_effects] : models) {
     for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
       const ModelEffect& effect = model.model.effects[e];
       if (has_effect(whole, effect.id)) continue;
@@ -79,8 +80,8 @@ std::vector<double> coefficients_in(const ModelDefinition& model, const ModelDef
   std::vector<double> coefficients;
   for (const ModelEffect& effect : whole.model.effects) {
     const ModelEffect* const found = effect_in(model, effect.id);
-    const std::vector<double> own = found == nullptr ? neutral_of(effect) : found->parameters;
-    coefficients.insert(coefficients.end(), own.begin(), own.end());
+    const std::vector<double> parameters = found == nullptr ? neutral_of(effect) : found->parameters;
+    coefficients.insert(coefficients.end(), parameters.begin(), parameters.end());
   }
   return coefficients;
 }
@@ -101,14 +102,14 @@ ModelDefinition with_start_of(const ModelDefinition& given, ModelDefinition exte
   return extended;
 }
 
-References with_alike(const References& references, const TrialModel& model,
-                      const std::vector<std::string>& variables) {
-  if (model.alike.empty()) return references;
+References with_shared_effects(const References& references, const TrialModel& model,
+                               const std::vector<std::string>& variables) {
+  if (model.shared_effects.empty()) return references;
   References result;
   for (const std::shared_ptr<const Reference>& reference : references) {
     const ModelDefinition* const other = reference->model();
     result.push_back(other == nullptr ? reference
-                                      : reference->with_model(with_what_is_alike(*other, model, variables)));
+                                      : reference->with_model(add_shared_effects(*other, model, variables)));
   }
   return result;
 }
@@ -122,9 +123,9 @@ std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<
     for (const TrialModel& model : models) {
       std::vector<double>& all = trials.emplace_back();
       const ModelDefinition* const other = reference->model();
-      all = coefficients_in(other == nullptr ? model.file : without_what_is_alike(model.file, model), whole);
+      all = coefficients_in(other == nullptr ? model.file : without_shared_effects(model.file, model), whole);
       if (other == nullptr) continue;
-      const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);
+      const std::vector<double> theirs = coefficients_in(without_shared_effects(*other, model), *other);
       all.insert(all.end(), theirs.begin(), theirs.end());
     }
     const auto add = [&](const FlightSet& some, double training_share) {

@@ -41,7 +41,7 @@ OfferedEffect offered_effect(const EmpiricalPredictor& variable, const std::stri
   offered.step.title = fmt::format("structure that varies with {}{}", variable.name,
                                    variable.description.empty() ? "" : ", " + variable.description);
   offered.is_named = false;
-  offered.is_sure = true;  // only significant variables are traced
+  offered.is_sure = true;  // only significant predictors are listed
   offered.caution = "; no effect of the catalogue explains this structure: its cause is unknown";
   return offered;
 }

@@ -11,7 +11,7 @@ namespace pcor::internal {
 struct AddedEffect {
   ModelEffect effect;                ///< the model with the starting coefficients
   std::vector<std::string> fixed{};  ///< parameters that the flights do not determine
-  bool is_alike = false;             ///< the reference systems have the same effect
+  bool is_shared = false;            ///< the reference systems have the same effect
   double probability = 1.0;          ///< posterior probability among the effect and its rivals
 };
 
@@ -28,7 +28,7 @@ struct OfferedEffect {
 /// A finding of a diagnosis, with its rivals.
 OfferedEffect offered_effect(const Finding& finding, const Diagnosis& diagnosis);
 
-/// A formula of a recorded variable that traces structure without a named cause.
+/// A formula of a recorded variable that describes structure without a named cause.
 /// @param flights description for the source of the formula
 OfferedEffect offered_effect(const EmpiricalPredictor& variable, const std::string& flights);
 

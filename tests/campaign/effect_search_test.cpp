@@ -521,7 +521,7 @@ TEST(LeftoverRows, AreOrthogonalToBaseAndOtherFindings) {
   Problem problem(400, 6, 16, 0.7);
   problem.residual += 0.5 * problem.candidate(1) + 0.3 * problem.candidate(4);
   const EffectSearch search = problem.search();
-  const Eigen::VectorXd rows = search.leftover_rows(1, {1, 4})[0];
+  const Eigen::VectorXd rows = search.rows_after(1, {1, 4})[0];
   const Eigen::MatrixXd white = problem.columns / problem.noise.level[0][0];
   for (const Eigen::Index column : {Eigen::Index{0}, Eigen::Index{1}, base + 4})
     EXPECT_NEAR(rows.dot(white.col(column)) / rows.norm() / white.col(column).norm(), 0.0, 1e-9) << column;

@@ -110,7 +110,7 @@ TEST(WhitenedSystem, BlockScoresSumToTotalScore) {
   example.noise.drift_component_rms = {0.0, 0.5, 0.0, 0.0};
   const WhitenedSystem scores = example.system();
   // The residual without coefficients has the score of the input residual.
-  const std::vector<Eigen::VectorXd> residuals = scores.left(Eigen::VectorXd::Zero(4));
+  const std::vector<Eigen::VectorXd> residuals = scores.residuals_after(Eigen::VectorXd::Zero(4));
   Eigen::VectorXd score = Eigen::VectorXd::Zero(4);
   for (std::size_t f = 0; f < 2; ++f) score += scores.rows[f].leftCols(4).transpose() * residuals[f];
   EXPECT_TRUE(score.isApprox(scores.information.col(4).head(4), 1e-9));

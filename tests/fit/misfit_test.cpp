@@ -90,7 +90,7 @@ TEST(Misfit, IsNoNoiseOfAnyStaticPressure) {
   ASSERT_EQ(flights.joint().size(), 2U);
   Solution solution{task.start, std::vector<bool>(3, false), 1.0};
   solution = solve(flights, std::move(solution), {0, 1, 2});
-  EXPECT_GT(find_misfit(flights, solution).left, 0.05);
+  EXPECT_GT(find_misfit(flights, solution).rms, 0.05);
   // One reference, given twice.
   const FitFlights& again = *flights.further().front();
   EXPECT_EQ(again.noise(0).drift_component_rms, flights.noise(0).drift_component_rms);
