@@ -15,7 +15,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "parallel/serialization.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 #include "residuals/serialization.hpp"
 #include "roles/model_inputs.hpp"
 

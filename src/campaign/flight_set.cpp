@@ -25,7 +25,8 @@ namespace {
 constexpr std::size_t max_open = 16;  // files; HDF5 keeps 5 MB for each
 
 std::size_t bytes_of(const ModelSamples& samples, std::size_t records) {
-  return (samples.columns.size() + samples.moving.size()) * records + samples.along_beam.values.size();
+  return (samples.columns.size() + samples.parameter_dependent.size()) * records +
+         samples.along_beam.values.size();
 }
 
 std::size_t bytes_of(const FlightSamples& samples) {

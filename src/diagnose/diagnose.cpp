@@ -281,7 +281,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.is_refitted = !gps_kind(first_of(references));
   const Eigen::VectorXd base = changes(analysis, {}, diagnosis.is_refitted);
-  diagnosis.own = refitted_coefficients(analysis, set.base, base);
+  diagnosis.model_coefficients = refitted_coefficients(analysis, set.base, base);
   diagnosis.flights =
       flights_of(analysis, base, changes(analysis, analysis.result().chosen, diagnosis.is_refitted));
   diagnosis.residual_rms = rms_of(

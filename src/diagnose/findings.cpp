@@ -17,7 +17,7 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -224,7 +224,7 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.title = candidates[g].title;
     alias.correction = with_estimate(candidates[g], score.estimate);
     alias.fixed = held_of(candidates[g], search.identifiable(g));
-    alias.is_alike = candidates[g].is_shared;
+    alias.is_shared = candidates[g].is_shared;
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
     alias.chi2_difference =
@@ -386,7 +386,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const References& ref
     Finding finding;
     finding.effect = with_estimate(candidate, effect_coefficients);
     finding.of_reference = candidate.is_of_reference();
-    finding.is_alike = candidate.is_shared;
+    finding.is_shared = candidate.is_shared;
     finding.system = candidate.system;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);

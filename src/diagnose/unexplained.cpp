@@ -413,7 +413,7 @@ std::vector<const Structure*> add_predictors(const Analysis& analysis, const Str
     structures.push_back(structure);
     if (structures.size() > 1) continue;
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f)
-      diagnosis.flights[f].traced = *structure->variable->values[f];
+      diagnosis.flights[f].predictor = *structure->variable->values[f];
   }
   return structures;
 }

@@ -17,7 +17,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 
 namespace pcor {
 
@@ -29,7 +29,7 @@ constexpr std::size_t max_predictors = 2;
 
 /// Whether a candidate is the requested effect, in its shape.
 bool is_meant(const Candidate& candidate, const WhatIfCandidate& requested) {
-  if (candidate.id != requested.id || candidate.is_shared != requested.is_alike) return false;
+  if (candidate.id != requested.id || candidate.is_shared != requested.is_shared) return false;
   if (!requested.effect) return !candidate.is_variant;
   std::vector<double> parameters = candidate.effect.parameters;
   for (const CandidateParameter& tested : candidate.tested)
@@ -218,7 +218,7 @@ WhatIfPanel panel_of(const CandidateSet& set, const std::vector<WhatIfCandidate>
                      const std::vector<CoefficientEstimate>& start_values,
                      const std::string& flaps_variable) {
   WhatIfPanel panel;
-  panel.own = set.base.size();
+  panel.model_coefficients = set.base.size();
   for (const BaseCoefficient& coefficient : set.base) {
     const auto start =
         std::find_if(start_values.begin(), start_values.end(),
@@ -264,10 +264,10 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
     if (is_new && candidates.size() < max_what_if_effects) candidates.push_back(std::move(candidate));
   };
   for (const Finding& finding : diagnosis.findings)
-    add({finding.id(), "found", finding.effect, finding.is_alike, finding.id()});
+    add({finding.id(), "found", finding.effect, finding.is_shared, finding.id()});
   for (const Finding& finding : diagnosis.findings) {
     for (const Alias& alias : finding.aliases)
-      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_alike, finding.id()});
+      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_shared, finding.id()});
   }
   for (const ModelEffect& formula : formulas) add({formula.id, "your formula"});
   std::vector<std::string> flights;
@@ -321,7 +321,7 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   WhatIf result;
   if (found.empty()) return result;
   WhatIfPanel& panel = result.panel;
-  panel = panel_of(set, found, options.own, columns.flights.front().samples->flaps_variable);
+  panel = panel_of(set, found, options.model_coefficients, columns.flights.front().samples->flaps_variable);
   panel.is_start_fitted = is_fitted_to(model, files);
   std::vector<std::size_t> are_found;
   for (std::size_t e = 0; e < found.size(); ++e) {

@@ -166,7 +166,7 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Part
   for (const ColumnGroup& group : groups_) identifiable_.push_back(indices_of(group, base_));
   for (const std::vector<std::size_t>& some : subsets_of(found))
     panel.weights.push_back(find_sums(model, set, some, is_robust));
-  panel.alike = as_sums(flights_.partition.all_reduce_flights<PartialSums>([&](std::size_t f) {
+  panel.unweighted = as_sums(flights_.partition.all_reduce_flights<PartialSums>([&](std::size_t f) {
     const FlightColumns& flight = flights_.flights[f];
     PartialSums sums(held_out_parts + 1, given_.size() + 1);  // the outliers last
     if (flight.reference != 0) return sums;
@@ -179,8 +179,8 @@ WhatIfFit::WhatIfFit(const ModelDefinition& model, const CandidateSet& set, Part
     }
     return sums;
   }));
-  panel.outliers = std::move(panel.alike.back());
-  panel.alike.pop_back();
+  panel.outliers = std::move(panel.unweighted.back());
+  panel.unweighted.pop_back();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     for (const Eigen::Index c : indices_of(groups_[g], base_)) {
       const std::vector<Eigen::Index>& free = identifiable_[g];

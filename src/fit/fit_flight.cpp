@@ -6,7 +6,7 @@
 #include "campaign/model_parameters.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 
 namespace pcor::internal {
 
@@ -18,7 +18,7 @@ std::map<std::size_t, double> neutral_parameters(const FitTask& task) {
   std::map<std::size_t, double> result;
   const ModelDefinition* const other = task.reference.model();
   if (other == nullptr) return result;
-  for (const std::string& effect : task.options.alike) {
+  for (const std::string& effect : task.options.shared_effects) {
     const std::vector<double> neutral = neutral_effect(effect).parameters;
     const auto add = [&](const ModelDefinition& model, std::size_t first) {
       const std::optional<std::size_t> position = first_parameter_of(model, effect);
@@ -80,8 +80,8 @@ Eigen::MatrixXd sample_rows(const LinearRows& rows, const FitTask& task,
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup,
                      const Eigen::VectorXd& parameters, std::vector<Mask>& mask)
     : task_(&task),
-      recomputed_samples_(samples->model.moving.empty() ? nullptr
-                                                        : std::make_shared<FlightSamples>(*samples)),
+      recomputed_samples_(
+          samples->model.parameter_dependent.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
       rows_(residuals_at(recomputed_samples_ ? recomputed_samples_ : std::move(samples), task, setup.values,
                          mask),
             task.model, task.reference,
@@ -92,8 +92,8 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
   FastSeries& speed = recomputed_samples_->model.along_beam;
   if (speed.in_record == 1 && !speed.values.empty())
     speed.values = airspeed_along_beam(task.model, recomputed_samples_->model, coefficients.data());
-  find_moving_columns(task.model.model, coefficients.data(), recomputed_samples_->time,
-                      recomputed_samples_->step, recomputed_samples_->model);
+  find_parameter_dependent_columns(task.model.model, coefficients.data(), recomputed_samples_->time,
+                                   recomputed_samples_->step, recomputed_samples_->model);
 }
 
 bool FitFlight::masks_change_at(const Eigen::VectorXd& parameters) const {

@@ -7,7 +7,7 @@
 
 #include "campaign/gps_rows.hpp"
 #include "numerics/decompositions.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 
 namespace pcor::internal {
 namespace {

@@ -121,9 +121,9 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
                     return std::find(held.begin(), held.end(), name) != held.end();
                   }));
   file.covariance = std::move(covariance);
-  if (!std::isnan(fit.left)) {  // a fit by GPS alone estimates no misfit, and keeps the stated one
+  if (!std::isnan(fit.misfit_rms)) {  // a fit by GPS alone estimates no misfit, and keeps the stated one
     file.uncertainty.static_defect.reset();
-    const double misfit = std::hypot(fit.left, fit.between_flights);
+    const double misfit = std::hypot(fit.misfit_rms, fit.between_flights);
     if (misfit > 0.0) file.uncertainty.static_defect = misfit;
     file.uncertainty.static_defect_ratio.reset();
   }

@@ -405,7 +405,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelDefinition& model, c
       result.surfaces.push_back({surface.effect, surface.size, surface.degrees_of_freedom});
   }
   result.drift_rms = flights.drift_rms();
-  result.left = by_gps_alone ? nan : misfit.rms;
+  result.misfit_rms = by_gps_alone ? nan : misfit.rms;
   result.between_flights = by_gps_alone ? nan : std::sqrt(misfit.between_flights);
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.rejection_reason =

@@ -86,7 +86,7 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   const auto refit_options_for = [&](const TrialModel& trial) {
     RefitOptions refit_with = options.refit;
-    refit_with.alike = trial.shared_effects;
+    refit_with.shared_effects = trial.shared_effects;
     refit_with.added = added_to(trial.file);
     return refit_with;
   };
@@ -169,10 +169,10 @@ WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const R
     // A surface has no single coefficient to move.
     if (candidate.effect && candidate.effect->is_surface()) continue;
     if (const Finding* const finding = finding_of(improvement, index)) {
-      candidate.is_alike = finding->is_alike;
+      candidate.is_shared = finding->is_shared;
       for (const Alias& alias : finding->aliases)
         rivals.push_back(
-            {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
+            {alias.effect, "instead of " + step.added, alias.correction, alias.is_shared, step.added});
     }
     candidates.push_back(std::move(candidate));
   }

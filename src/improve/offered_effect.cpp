@@ -11,7 +11,7 @@ namespace pcor::internal {
 
 OfferedEffect offered_effect(const Finding& finding, const Diagnosis& diagnosis) {
   OfferedEffect offered;
-  offered.choices.push_back({finding.effect, finding.fixed, finding.is_alike, finding.probability});
+  offered.choices.push_back({finding.effect, finding.fixed, finding.is_shared, finding.probability});
   offered.step.title = finding.title;
   offered.is_sure = finding.chi2_reduction > sure_gain * finding.chi2_reduction_error;
   if (is_of_impossible_size(finding)) offered.impossible_size = finding.relative_size;
@@ -19,7 +19,7 @@ OfferedEffect offered_effect(const Finding& finding, const Diagnosis& diagnosis)
   for (const Alias& alias : finding.aliases) {
     aliases.push_back(alias.effect);
     if (alias.probability >= min_probability)
-      offered.choices.push_back({alias.correction, alias.fixed, alias.is_alike, alias.probability});
+      offered.choices.push_back({alias.correction, alias.fixed, alias.is_shared, alias.probability});
   }
   if (diagnosis.verdict == Verdict::partial) {
     offered.is_named = false;

@@ -41,7 +41,7 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
   std::array<std::vector<SurfaceRoughness>, 2> priors{{{}, std::move(surfaces)}};
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
-    without_block.alike = models[0].shared_effects;
+    without_block.shared_effects = models[0].shared_effects;
     if (!without_block.mask.intervals) without_block.mask.intervals.emplace();
     for (const TrialFlight& flight : outline) {
       if (flight.first_reference && flight.fitted.size() >= held_out_blocks)
@@ -92,7 +92,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
   SurfaceOffer offer;
   offer.model = models[1];
   RefitOptions of_all = options;
-  of_all.alike = model.shared_effects;
+  of_all.shared_effects = model.shared_effects;
   std::vector<SurfaceRoughness> surfaces;
   TrialModel fitted = models[1];
   fitted.file = fitted_coefficients(flights, models[1].file, references, of_all, surfaces);

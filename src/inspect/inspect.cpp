@@ -140,9 +140,10 @@ class Look {
     result_.naming = naming_.name;
     result_.naming_title = naming_.title;
     if (roles_.empty()) {
-      for (const VariableNaming* naming : matching_namings(flight_)) result_.alike.push_back(naming->name);
+      for (const VariableNaming* naming : matching_namings(flight_))
+        result_.matching_namings.push_back(naming->name);
     } else {
-      result_.alike = {naming_.name};
+      result_.matching_namings = {naming_.name};
     }
     result_.time = flight_.time();
     result_.records = flight_.records();
@@ -335,7 +336,8 @@ class Look {
       const auto role = static_cast<Quantity>(i);
       const std::string name(info_of(role).name);
       const RoleCandidate* const candidate = sure_candidate(name);
-      const bool is_known = !result_.alike.empty() && !first_with_values(flight_, naming_, name).empty();
+      const bool is_known =
+          !result_.matching_namings.empty() && !first_with_values(flight_, naming_, name).empty();
       const bool is_chosen =
           has(role) || is_known || has_another(role, temperatures) || has_another(role, humidity_roles);
       if (candidate == nullptr || is_chosen) continue;

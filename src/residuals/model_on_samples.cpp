@@ -31,10 +31,10 @@ std::vector<Batch::Input> internal::gathered(const std::vector<Batch::Input>& co
 ModelOnSamples::ModelOnSamples(const ModelDefinition& file, const ModelSamples& samples)
     : model_(file.model), batch_(file.model, roles_of(file, samples)) {
   for (const Quantity input : chain().inputs()) columns_.push_back({input, samples.find(input)->data()});
-  for (const ParameterDependentColumn& column : samples.moving) {
+  for (const ParameterDependentColumn& column : samples.parameter_dependent) {
     std::size_t first = 0;
     for (const ModelEffect& effect : model_.effects) {
-      if (effect.id == column.effect) moving_.push_back({&column, first + column.parameter});
+      if (effect.id == column.effect) dependences_.push_back({&column, first + column.parameter});
       first += effect.parameters.size();
     }
   }
@@ -45,7 +45,7 @@ std::vector<Batch::Input> ModelOnSamples::gathered(const std::vector<std::size_t
                                                    std::vector<double>& store) const {
   const std::size_t count = samples.size();
   std::vector<Batch::Input> inputs = internal::gathered(columns_, samples, store);
-  for (const Moving& each : moving_) {
+  for (const ParameterDependence& each : dependences_) {
     const double change = parameters[each.parameter] - each.column->at;
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       if (columns_[c].quantity != each.column->quantity) continue;
@@ -56,14 +56,14 @@ std::vector<Batch::Input> ModelOnSamples::gathered(const std::vector<std::size_t
 }
 
 bool ModelOnSamples::matches_parameters(const double* parameters) const {
-  return std::all_of(moving_.begin(), moving_.end(), [parameters](const Moving& each) {
+  return std::all_of(dependences_.begin(), dependences_.end(), [parameters](const ParameterDependence& each) {
     return parameters[each.parameter] == each.column->at;
   });
 }
 
 std::vector<double> ModelOnSamples::parameters_of_columns() const {
   std::vector<double> values = parameters();
-  for (const Moving& each : moving_) values[each.parameter] = each.column->at;
+  for (const ParameterDependence& each : dependences_) values[each.parameter] = each.column->at;
   return values;
 }
 

@@ -97,7 +97,7 @@ class ModelOnSamples {
 
  private:
   /// Column that depends on a coefficient, and the index of the coefficient among the parameters.
-  struct Moving {
+  struct ParameterDependence {
     const ParameterDependentColumn* column;
     std::size_t parameter;
   };
@@ -105,7 +105,7 @@ class ModelOnSamples {
   template <class S>
   void read(std::size_t sample, const S* parameters, State<S>& state) const {
     for (const Batch::Input& column : columns_) state[column.quantity] = S(column.values[sample]);
-    for (const Moving& each : moving_) {
+    for (const ParameterDependence& each : dependences_) {
       state[each.column->quantity] +=
           S(each.column->slope[sample]) * (parameters[each.parameter] - S(each.column->at));
     }
@@ -114,7 +114,7 @@ class ModelOnSamples {
   Model model_;
   Batch batch_;
   std::vector<Batch::Input> columns_;
-  std::vector<Moving> moving_;
+  std::vector<ParameterDependence> dependences_;
 };
 
 }  // namespace pcor

@@ -8,7 +8,7 @@
 #include "numerics/missing.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/model_on_samples.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 #include "residuals/predicted_pressures.hpp"
 #include "residuals/references/lams.hpp"
 

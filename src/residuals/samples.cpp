@@ -18,7 +18,7 @@
 #include <pcor/residuals/reference.hpp>
 #include "flight/flight_file.hpp"
 #include "numerics/missing.hpp"
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 #include "residuals/time_spans.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/find_frozen.hpp"
@@ -239,7 +239,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
     samples.along_beam = read_along_beam(flight, model, inputs, samples);
     add(Quantity::airspeed_rate, rate(samples.along_beam));
   }
-  find_moving_columns(model.model, chain.parameters().data(), time, step, samples);
+  find_parameter_dependent_columns(model.model, chain.parameters().data(), time, step, samples);
   return samples;
 }
 

@@ -39,7 +39,7 @@ Notes contradicting_signs(const FlightSamples& samples, double min_airspeed);
 
 /// Text that is identical for two models with the same inputs from a flight: variables, units, and the
 /// quantities that the chain needs. Law and coefficients count only if a column depends on them
-/// (`find_moving_columns`, `airspeed_along_beam`).
+/// (`find_parameter_dependent_columns`, `airspeed_along_beam`).
 /// @throws Error if the model cannot be used on its roles
 std::string inputs_of(const ModelDefinition& model, bool with_laser);
 

@@ -46,7 +46,7 @@ void serialize(Archive& archive, pcor::FastSeries& series) {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::ModelSamples& samples) {
-  archive(samples.roles, samples.columns, samples.variables, samples.frozen, samples.moving,
+  archive(samples.roles, samples.columns, samples.variables, samples.frozen, samples.parameter_dependent,
           samples.along_beam);
 }
 

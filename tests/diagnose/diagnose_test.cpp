@@ -245,7 +245,7 @@ TEST(Diagnose, UnexplainedStructureIsTracedToItsVariable) {
   EXPECT_GT(predictor.slope, 0.01);
   EXPECT_LT(predictor.slope, 0.04);
   ASSERT_THAT(diagnosis.flights, SizeIs(1));
-  EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
+  EXPECT_EQ(diagnosis.flights[0].predictor.size(), diagnosis.flights[0].samples->time.size());
   // The line of the model that lets the effect of the torque be tested.
   EXPECT_THAT(diagnosis.notes, Contains(pcor::test::Says("engine_torque = \"ENGTRQ\"")));
 }

@@ -64,7 +64,7 @@ FlightDiagnosis diagnosed_flight(const std::string& name, unsigned seed) {
     made.mach.push_back(0.3 + 0.02 * std::sin(t / 300.0));
     made.attack.push_back(nan);
     made.sideslip.push_back(sideslip);
-    made.traced.push_back(torque);
+    made.predictor.push_back(torque);
     made.drift.push_back(0.03 * std::sin(t / 900.0));
     const double residual = 0.003 * (torque - 60.0) + made.drift.back() + noise;
     made.before.push_back(used ? residual + first + second : nan);
@@ -376,7 +376,8 @@ TEST(DiagnosisReport, NamesTheCoefficientsThatAreFittedAgain) {
   Diagnosis diagnosis = unexplained();
   const auto summary = [&] { return diagnosis_report(diagnosis, named_model()).summary; };
   EXPECT_THAT(summary(), Contains(HasSubstr("0.196 hPa with the model's own coefficients fitted again")));
-  diagnosis.own = {{"static-constant.a0", "1", 0.0, 0.1}, {"reference:static-constant.a0", "1", 0.0, 0.1}};
+  diagnosis.model_coefficients = {{"static-constant.a0", "1", 0.0, 0.1},
+                                  {"reference:static-constant.a0", "1", 0.0, 0.1}};
   EXPECT_THAT(summary(),
               Contains(HasSubstr(
                   "0.196 hPa with the coefficients of the model and of the reference system fitted again")));
@@ -465,7 +466,8 @@ TEST(DiagnosisReport, NonFiniteValuesAreOmitted) {
   finding.aliases.front().relative_size = infinity;
   diagnosis.noise_rms = diagnosis.residual_rms = diagnosis.residual_rms_held_out = nan;
   for (FlightDiagnosis& one : diagnosis.flights) {
-    for (std::vector<double>* values : {&one.mach, &one.sideslip, &one.evidence[0], &one.traced, &one.drift})
+    for (std::vector<double>* values :
+         {&one.mach, &one.sideslip, &one.evidence[0], &one.predictor, &one.drift})
       values->assign(values->size(), nan);
     one.added.clear();
   }

@@ -82,17 +82,17 @@ std::string beside_json(const Diagnosis& diagnosis) {
   std::vector<std::string> held;
   for (const Finding& finding : diagnosis.findings) {
     numbers.insert(numbers.end(), {finding.chi2_reduction, finding.chi2_reduction_error, finding.worst_time,
-                                   static_cast<double>(finding.is_alike)});
+                                   static_cast<double>(finding.is_shared)});
     held.push_back(serialized(finding.evidence));
     held.insert(held.end(), finding.fixed.begin(), finding.fixed.end());
     for (const Alias& alias : finding.aliases) {
       const std::vector<double>& parameters = alias.correction.parameters;
-      numbers.insert(numbers.end(), {alias.probability, static_cast<double>(alias.is_alike)});
+      numbers.insert(numbers.end(), {alias.probability, static_cast<double>(alias.is_shared)});
       numbers.insert(numbers.end(), parameters.begin(), parameters.end());
       held.insert(held.end(), alias.fixed.begin(), alias.fixed.end());
     }
   }
-  for (const CoefficientEstimate& estimate : diagnosis.own)
+  for (const CoefficientEstimate& estimate : diagnosis.model_coefficients)
     numbers.insert(numbers.end(), {estimate.value, estimate.standard_error});
   return serialized(numbers) + serialized(held) + serialized(diagnosis.flights);
 }
@@ -152,7 +152,7 @@ TEST(ParallelWhatIf, ResultEqualsThatOfOneProcess) {
   const auto candidates = what_if_candidates(diagnosis, {});
   WhatIfOptions options;
   options.diagnose.training_share = 0.8;
-  options.own = diagnosis.own;
+  options.model_coefficients = diagnosis.model_coefficients;
   const auto of_team = [&](Communicator& comm, WhatIfOptions with) {
     const FlightSet all(paths, {{}, &comm});
     with.holdout = all.part(paths.size() - 1, 1);
@@ -165,7 +165,7 @@ TEST(ParallelWhatIf, ResultEqualsThatOfOneProcess) {
       const WhatIf found = of_team(comm, options);
       EXPECT_EQ(serialized(found.panel.coefficients), serialized(alone.panel.coefficients));
       EXPECT_EQ(serialized(found.panel.weights), serialized(alone.panel.weights));
-      EXPECT_EQ(serialized(found.panel.alike), serialized(alone.panel.alike));
+      EXPECT_EQ(serialized(found.panel.unweighted), serialized(alone.panel.unweighted));
       EXPECT_EQ(serialized(found.panel.outliers), serialized(alone.panel.outliers));
       EXPECT_EQ(serialized(found.panel.held_out), serialized(alone.panel.held_out));
       EXPECT_EQ(serialized(found.flights), serialized(alone.flights));

@@ -248,7 +248,7 @@ TEST(GpsFit, GpsAloneKeepsTheStatedMisfit) {
   EXPECT_EQ(result.model.uncertainty.static_defect_ratio, 0.001);
   // A fit by GPS alone does not compute these.
   for (const double value :
-       {result.left, result.between_flights, result.least_squares_rms, result.autocorrelation_time})
+       {result.misfit_rms, result.between_flights, result.least_squares_rms, result.autocorrelation_time})
     EXPECT_TRUE(std::isnan(value)) << value;
 }
 

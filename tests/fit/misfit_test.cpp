@@ -42,7 +42,9 @@ RefitResult fit_with_defect(double (*defect)(double, double, double, double)) {
 
 }  // namespace
 
-TEST(Misfit, CorrectLawHasAMisfitBelowTheNoise) { EXPECT_LT(fit_with_defect(made::equation_18).left, 0.05); }
+TEST(Misfit, CorrectLawHasAMisfitBelowTheNoise) {
+  EXPECT_LT(fit_with_defect(made::equation_18).misfit_rms, 0.05);
+}
 
 // A missing roll gave a load factor of 10.
 TEST(Misfit, MissingRollGivesNoLoadFactor) {
@@ -103,7 +105,7 @@ TEST(Misfit, MisfitEqualsTheSizeOfAMissingTerm) {
   // The part that the law cannot follow increases the residual: the squares add up.
   const double missing = std::sqrt(wrong.rms * wrong.rms - right.rms * right.rms);
   EXPECT_GT(missing, 0.1);
-  EXPECT_NEAR(wrong.left, missing, 0.3 * missing);
+  EXPECT_NEAR(wrong.misfit_rms, missing, 0.3 * missing);
   for (std::size_t p = 0; p < right.parameters.size(); ++p) {
     EXPECT_GT(wrong.parameters[p].standard_error, right.parameters[p].standard_error);
     EXPECT_GE(wrong.parameters[p].standard_error, wrong.parameters[p].noise_error);

@@ -73,7 +73,7 @@ TEST(SeveralReferences, CommonErrorsOfTwoSystemsStayUnresolved) {
       pcor::Bounds{-30.0, 30.0};  // the flight has no lag, and may go below zero
   const FittedParameter alone = parameter(fit_of_short_flight(model, {"lams"}), "total-lag.tau");
   pcor::RefitOptions options;
-  options.alike = {"total-lag"};
+  options.shared_effects = {"total-lag"};
   const References references = pcor::read_references({"lams", "total:PSFRD+QCFR"}, model, {}).used;
   const FittedParameter shared =
       parameter(pcor::refit({flight_file()}, model, references, options), "total-lag.tau");

@@ -268,10 +268,10 @@ void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
 void print_fit_summary(const RefitResult& fit) {
   const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
   if (held_out && held_out->is_off()) print_formatted("Warning: {}.\n", held_out->text());
-  if (fit.left > 0.0)
+  if (fit.misfit_rms > 0.0)
     print_formatted(
         "Model error varying with the flight state: {:.2f} hPa (rms); slow drift of the noise: {:.2f} hPa.\n",
-        fit.left, fit.drift_rms);
+        fit.misfit_rms, fit.drift_rms);
   if (fit.between_flights > 0.0)
     print_formatted("Standard deviation between flights of the mean residual: {:.2f} hPa.\n",
                     fit.between_flights);

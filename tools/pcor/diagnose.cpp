@@ -203,7 +203,7 @@ std::vector<NextStep> next_steps(const Diagnosis& diagnosis, const ModelDefiniti
     std::string add = program() + " add";
     for (const Finding& finding : findings) {
       add += " " + shell_quote(argument_of(finding.effect));
-      if (!finding.is_alike) continue;
+      if (!finding.is_shared) continue;
       steps.push_back(
           {fmt::format("{} was found {}, which a model file cannot represent: it is added without this part.",
                        finding.id(), finding.shape)});
@@ -303,7 +303,7 @@ void run(const DiagnoseArguments& options) {
     if (!options.common.report.empty()) {
       diagnose_with.series_of = diagnosis.flights_with_records();
       tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
-                      {diagnose_with, {}, true, diagnosis.own});
+                      {diagnose_with, {}, true, diagnosis.model_coefficients});
       add_commands(tried, options.model, options.comparison.flights.front(),
                    command_line(options.comparison) + command_line(options.fit));
     }

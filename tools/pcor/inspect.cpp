@@ -155,14 +155,14 @@ void print_head(const Inspection& flight) {
   for (const auto& [rate, count] : flight.rates)
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
   print_formatted("variables: {}\n", fmt::join(rates, ", "));
-  if (flight.alike.empty()) {
+  if (flight.matching_namings.empty()) {
     print_formatted("naming convention: unknown; names of {} ({}) are tried\n", flight.naming,
                     flight.naming_title);
-  } else if (flight.alike.size() > 1) {
+  } else if (flight.matching_namings.size() > 1) {
     print_formatted(
         "naming convention: files of {} match; names of {} are used; set the right one in the model by "
         "roles\n",
-        fmt::join(flight.alike, " and of "), flight.naming);
+        fmt::join(flight.matching_namings, " and of "), flight.naming);
   } else {
     print_formatted("naming convention: {} ({})\n", flight.naming_title, flight.naming);
   }

@@ -100,7 +100,7 @@ struct Alias {
   double probability = 0.0;          ///< posterior probability among the named effect and its aliases, 0 to 1
   ModelEffect correction{};          ///< effect with the estimated coefficients, ready for a model
   std::vector<std::string> fixed{};  ///< see `Finding::fixed`
-  bool is_alike = false;             ///< see `Finding::is_alike`
+  bool is_shared = false;            ///< see `Finding::is_shared`
   std::size_t candidate = 0;         ///< index among the tested effects, of which each shape is one
 };
 
@@ -154,7 +154,7 @@ void describe(const ModelEffect& self, Field& field) {
 struct Finding {
   ModelEffect effect;  ///< effect with the estimated coefficients, ready for a model
   /// True: common mode, also present in the compared systems, which a model file cannot express.
-  bool is_alike = false;
+  bool is_shared = false;
   bool of_reference = false;  ///< true: acts on a compared system
   std::string system{};       ///< system, if several are compared: "PSFRD+QCFR"; otherwise empty
   std::string title;
@@ -399,7 +399,7 @@ struct FlightDiagnosis {
   /// For each finding: chi2 reduction per minute around the sample.
   std::vector<std::vector<double>> evidence;
   std::vector<double> drift;            ///< drift of the residual, hPa
-  std::vector<double> traced;           ///< first empirical predictor, in its unit; otherwise empty
+  std::vector<double> predictor;        ///< first empirical predictor, in its unit; otherwise empty
   std::vector<double> static_pressure;  ///< corrected, hPa
   std::vector<double> mach;
   std::vector<double> attack;    ///< deg; NaN if unknown
@@ -407,7 +407,7 @@ struct FlightDiagnosis {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(number, name, samples, before, after, added, evidence, drift, traced, static_pressure, mach,
+    archive(number, name, samples, before, after, added, evidence, drift, predictor, static_pressure, mach,
             attack, sideslip);
   }
 };
@@ -434,14 +434,15 @@ struct Diagnosis {
   std::vector<UnnamedRole> unnamed_roles{};  ///< the notes state them
   /// Free coefficients of the model, refitted (see `is_refitted`), with names like "static-qp.a2", followed
   /// by those of the references' models.
-  std::vector<CoefficientEstimate> own{};
+  std::vector<CoefficientEstimate> model_coefficients{};
   std::size_t candidates = 0;  ///< number of effects tested
   double threshold = 0.0;      ///< chi2 threshold for a detection
   /// rms residual of the unchanged model, hPa, as in `compare` and `refit`.
   double rms_given = 0.0;
   double noise_rms = 0.0;  ///< rms noise with the unchanged model, hPa
-  /// Whether the free coefficients of the model and of the references' models are refitted in `own`,
-  /// `residual_rms` and `flights`, by linearised least squares. By GPS alone they stay as given.
+  /// Whether the free coefficients of the model and of the references' models are refitted in
+  /// `model_coefficients`, `residual_rms` and `flights`, by linearised least squares. By GPS alone they stay
+  /// as given.
   bool is_refitted = true;
   double residual_rms = 0.0;             ///< rms residual, hPa
   double residual_rms_held_out = 0.0;    ///< cross-validated rms residual (five folds), hPa

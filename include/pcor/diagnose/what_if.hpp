@@ -18,7 +18,7 @@ struct WhatIfCandidate {
   std::string id;                       ///< id of a finding
   std::string why;                      ///< reason for its inclusion, e.g. "found", "instead of static-lag"
   std::optional<ModelEffect> effect{};  ///< effect with its shape; default: the shape of the catalogue
-  bool is_alike = false;                ///< see `Finding::is_alike`
+  bool is_shared = false;               ///< see `Finding::is_shared`
   std::string stands_for{};             ///< the finding that it represents or replaces
 };
 
@@ -29,7 +29,7 @@ struct WhatIfOptions {
   FlightSet holdout{};    ///< flights not used in any fit
   bool is_robust = true;  ///< true: outliers are down-weighted, as by the loss of a refit
   /// Coefficients of the model at the residual of the report; default: unchanged.
-  std::vector<CoefficientEstimate> own{};
+  std::vector<CoefficientEstimate> model_coefficients{};
 };
 
 /// Data of a flight for the what-if panel.

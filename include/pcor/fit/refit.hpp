@@ -36,7 +36,7 @@ struct RefitOptions {
   /// Effects of the model that are common to the systems of the references: they cancel in the difference of
   /// two systems and are excluded there. Otherwise a lag, for example, would be estimated from the noise of
   /// both sensors.
-  std::vector<std::string> alike{};
+  std::vector<std::string> shared_effects{};
   /// Gaussian prior at the starting value of every coefficient: covariance from the model file, otherwise the
   /// typical size of the effect, for a formula the value itself. Always used if the reference is fitted too:
   /// two static systems determine only their difference, and common effects keep the value and error of the
@@ -190,7 +190,7 @@ struct RefitResult {
   double noise_rms = 0.0;          ///< noise floor, hPa
   double drift_rms = 0.0;          ///< drift of the sensors, hPa
   /// Rms misfit of the model as a smooth function of the flight state, hPa.
-  double left = 0.0;
+  double misfit_rms = 0.0;
   /// Standard deviation between flights of the mean residual, hPa; 0 with one flight, NaN by GPS alone. The
   /// fitted model states the root of the sum of squares of both as the standard uncertainty of its delta-p in
   /// one sample.
@@ -232,7 +232,7 @@ struct RefitResult {
 template <class Field>
 void describe_summary(const RefitResult& self, Field& field) {
   field("estimator", self.estimator, "estimator of the coefficients and their errors");
-  field("left_hpa", self.left,
+  field("left_hpa", self.misfit_rms,
         "misfit of the model that varies with the flight state, rms; null for a fit by GPS alone");
   field("between_flights_hpa", self.between_flights,
         "standard deviation between flights of the mean residual; null for a fit by GPS alone");
@@ -299,9 +299,9 @@ void describe(const RefitResult& self, Field& field) {
 ///
 /// Standard errors: M (N + F) M' with the derivatives M of the coefficients with respect to the residuals,
 /// the covariance N of the noise (an autoregression with one level per five minutes, and drift, by restricted
-/// likelihood) and the covariance F of the misfit of the model (`RefitResult::left`), plus the sensitivity to
-/// calibration errors of the reference and the thermometer (`RefitOptions::trust_reference`). A jackknife
-/// error is reported with each.
+/// likelihood) and the covariance F of the misfit of the model (`RefitResult::misfit_rms`), plus the
+/// sensitivity to calibration errors of the reference and the thermometer (`RefitOptions::trust_reference`).
+/// A jackknife error is reported with each.
 ///
 /// Wind and heights are fitted after the other references, by a likelihood with winds, D-value and errors of
 /// GPS as random processes (docs/gps.md). Coefficients of the other references and their covariance are the

@@ -120,7 +120,8 @@ struct Inspection {
   std::string institution{};
   std::string naming{};  ///< naming convention, e.g. "faam-core"
   std::string naming_title{};
-  std::vector<std::string> alike{};  ///< matching naming conventions; several: ambiguous, empty: unknown
+  std::vector<std::string>
+      matching_namings{};  ///< matching naming conventions; several: ambiguous, empty: unknown
   TimeAxis time{};
   std::size_t records = 0;
   std::map<int, std::size_t> rates{};  ///< number of variables for each number of samples per record
@@ -158,7 +159,7 @@ void describe(const Inspection& self, Field& field) {
   field("flight", self.flight, "number of the flight, from the attributes of the file");
   field("institution", self.institution, "institution, from the attributes of the file");
   field("names_of", self.naming, "naming convention of the variables");
-  field("alike", self.alike, "matching naming conventions");
+  field("alike", self.matching_namings, "matching naming conventions");
   const double highest_rate = self.rates.empty() ? 0.0 : self.rates.rbegin()->first / self.time.step;
   field("rate_hz", highest_rate, "highest rate of a variable");
   field("records", self.records, "number of records");

@@ -248,16 +248,16 @@ struct WhatIfPanel {
   bool is_start_fitted = false;
   /// Coefficients of the model, followed by those of the effects.
   std::vector<WhatIfCoefficient> coefficients;
-  std::size_t own = 0;  ///< number of coefficients of the model
+  std::size_t model_coefficients = 0;  ///< number of coefficients of the model
   std::vector<WhatIfEffect> effects;
   std::vector<std::string> x_choices{};  ///< columns available as x axis of the residual
   double autocorrelation_time = 1.0;     ///< see `BinnedPanel`
   /// Fit weights; first entry: no effect removed, last entry: all findings removed.
   std::vector<WhatIfWeights> weights;
-  std::vector<WhatIfSums> alike;  ///< unweighted sums of the same parts, without outliers, hPa
-  WhatIfSums outliers{};          ///< unweighted sums of the outliers
-  WhatIfSums held_out{};          ///< unweighted sums of held-out data; empty if there are no held-out data
-  double noise = 0.0;             ///< rms, hPa
+  std::vector<WhatIfSums> unweighted;  ///< sums of the same parts, without outliers, hPa
+  WhatIfSums outliers{};               ///< unweighted sums of the outliers
+  WhatIfSums held_out{};  ///< unweighted sums of held-out data; empty if there are no held-out data
+  double noise = 0.0;     ///< rms, hPa
   std::string noise_label = "noise";
   WhatIfCommands commands{};
 };

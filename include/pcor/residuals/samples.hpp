@@ -38,7 +38,7 @@ struct ModelSamples {
   std::vector<std::pair<Quantity, std::vector<double>>> columns{};
   std::vector<std::pair<Quantity, std::string>> variables{};  ///< names in the file, for recorded quantities
   std::vector<FrozenSpan> frozen{};
-  std::vector<ParameterDependentColumn> moving{};
+  std::vector<ParameterDependentColumn> parameter_dependent{};
   FastSeries along_beam{};  ///< airspeed along the laser's beam, m/s, if its rate is used
 
   const std::vector<double>* find(Quantity quantity) const;

@@ -1,4 +1,4 @@
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,8 @@ std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
   return rate_of(speed, time, step, speed.min_period, seconds);
 }
 
-void find_moving_columns(const Model& model, const double* parameters, const std::vector<double>& time,
-                         double step, ModelSamples& samples) {
+void find_parameter_dependent_columns(const Model& model, const double* parameters,
+                                      const std::vector<double>& time, double step, ModelSamples& samples) {
   constexpr double little = 0.05;  // s
   std::size_t first = 0;
   for (const ModelEffect& effect : model.effects) {
@@ -53,12 +53,12 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     if (memory.of == Quantity::count) continue;
     std::vector<double>* const column = samples.find(memory.of);
     if (column == nullptr) continue;
-    auto moving =
-        std::find_if(samples.moving.begin(), samples.moving.end(),
+    auto dependent =
+        std::find_if(samples.parameter_dependent.begin(), samples.parameter_dependent.end(),
                      [&](const ParameterDependentColumn& each) { return each.quantity == memory.of; });
-    if (moving == samples.moving.end())
-      moving = samples.moving.insert(
-          moving, {memory.of, effect.id, memory.parameter, 0.0, std::vector<double>(column->size(), 0.0)});
+    if (dependent == samples.parameter_dependent.end())
+      dependent = samples.parameter_dependent.insert(
+          dependent, {memory.of, effect.id, memory.parameter, 0.0, std::vector<double>(column->size(), 0.0)});
     const double at = parameters[position];
     const auto over = [&](double seconds) { return remembered(memory.of, samples, time, step, seconds); };
     std::vector<double> values = over(at);
@@ -73,10 +73,10 @@ void find_moving_columns(const Model& model, const double* parameters, const std
     const std::vector<double> above = over(at + little);
     const double lower = memory.of == Quantity::wetness ? std::max(0.0, at - little) : at - little;
     const std::vector<double> below = over(lower);
-    moving->at = at;
+    dependent->at = at;
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double slope = (above[i] - below[i]) / (at + little - lower);
-      moving->slope[i] = std::isfinite(slope) ? slope : 0.0;  // next to a gap
+      dependent->slope[i] = std::isfinite(slope) ? slope : 0.0;  // next to a gap
     }
     // In place: readers of the column keep its address.
     std::copy(values.begin(), values.end(), column->begin());
@@ -88,7 +88,7 @@ std::vector<Batch::Input> columns_at(const double* parameters, const ModelOnSamp
   std::vector<Batch::Input> inputs = model.columns();
   if (model.matches_parameters(parameters)) return inputs;
   store = samples.model;
-  find_moving_columns(model.model(), parameters, samples.time, samples.step, store);
+  find_parameter_dependent_columns(model.model(), parameters, samples.time, samples.step, store);
   for (Batch::Input& input : inputs) input.values = store.find(input.quantity)->data();
   return inputs;
 }

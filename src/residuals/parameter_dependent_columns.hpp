@@ -26,8 +26,8 @@ std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
 /// Computes the columns of the samples that depend on a coefficient of the model, and their derivatives with
 /// respect to it (`remembered`). @param parameters of the model @param time of the records, s
 /// @param step sampling interval, s
-void find_moving_columns(const Model& model, const double* parameters, const std::vector<double>& time,
-                         double step, ModelSamples& samples);
+void find_parameter_dependent_columns(const Model& model, const double* parameters,
+                                      const std::vector<double>& time, double step, ModelSamples& samples);
 
 /// Columns of a model at some coefficients: columns of the samples, except columns that depend on
 /// coefficients and were computed at other values, which are computed into `store`.

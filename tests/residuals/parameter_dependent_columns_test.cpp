@@ -1,4 +1,4 @@
-#include "residuals/moving_columns.hpp"
+#include "residuals/parameter_dependent_columns.hpp"
 
 #include <gtest/gtest.h>
 #include <pcor/fit/refit.hpp>
@@ -36,8 +36,8 @@ void move_columns(FlightSamples& samples, const ModelDefinition& model, double s
   for (const pcor::ModelEffect& effect : model.model.effects)
     parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
   parameters.back() = seconds;
-  pcor::internal::find_moving_columns(model.model, parameters.data(), samples.time, samples.step,
-                                      samples.model);
+  pcor::internal::find_parameter_dependent_columns(model.model, parameters.data(), samples.time, samples.step,
+                                                   samples.model);
 }
 
 /// The short flight with something more in its scenario, without noise or with it.
@@ -62,13 +62,13 @@ std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& director
       noise);
 }
 
-TEST(MovingColumns, SlopeEqualsTheFiniteDifference) {
+TEST(ParameterDependentColumns, SlopeEqualsTheFiniteDifference) {
   const ModelDefinition model = with_clock(0.5);
   const auto samples = samples_of(pcor::test::short_flight(), model);
-  ASSERT_EQ(samples->model.moving.size(), 1U);
-  EXPECT_EQ(samples->model.moving[0].at, 0.5);
+  ASSERT_EQ(samples->model.parameter_dependent.size(), 1U);
+  EXPECT_EQ(samples->model.parameter_dependent[0].at, 0.5);
   const std::vector<double> before = *samples->model.find(Quantity::airspeed_rate);
-  const std::vector<double> slope = samples->model.moving[0].slope;
+  const std::vector<double> slope = samples->model.parameter_dependent[0].slope;
   constexpr double step = 0.02;
   const double* const column = samples->model.find(Quantity::airspeed_rate)->data();
   move_columns(*samples, model, 0.5 + step);
@@ -83,7 +83,7 @@ TEST(MovingColumns, SlopeEqualsTheFiniteDifference) {
   EXPECT_GT(largest, 0.1);
 }
 
-TEST(MovingColumns, MissingSamplesAreIndependentOfTheDelay) {
+TEST(ParameterDependentColumns, MissingSamplesAreIndependentOfTheDelay) {
   const ModelDefinition model = with_clock(0.0);
   const auto samples = samples_of(pcor::test::short_flight(), model);
   const std::vector<double> at_zero = *samples->model.find(Quantity::airspeed_rate);
@@ -95,7 +95,7 @@ TEST(MovingColumns, MissingSamplesAreIndependentOfTheDelay) {
   }
 }
 
-TEST(MovingColumns, FormulaCanReadTheAirspeedRate) {
+TEST(ParameterDependentColumns, FormulaCanReadTheAirspeedRate) {
   ModelDefinition model = pcor::test::laser_model();
   pcor::ModelEffect formula;
   formula.id = "mine";
@@ -127,13 +127,13 @@ std::filesystem::path wet_flight(const pcor::test::TemporaryDirectory& directory
                            false);
 }
 
-TEST(MovingColumns, DependOnTheDryingTime) {
+TEST(ParameterDependentColumns, DependOnTheDryingTime) {
   const pcor::test::TemporaryDirectory directory;
   const ModelDefinition model = with_wetting(8.0);
   const auto samples = samples_of(wet_flight(directory, 8.0), model);
-  ASSERT_EQ(samples->model.moving.size(), 1U);
+  ASSERT_EQ(samples->model.parameter_dependent.size(), 1U);
   const std::vector<double> before = *samples->model.find(Quantity::wetness);
-  const std::vector<double> slope = samples->model.moving[0].slope;
+  const std::vector<double> slope = samples->model.parameter_dependent[0].slope;
   move_columns(*samples, model, 8.1);
   const std::vector<double>& now = *samples->model.find(Quantity::wetness);
   double largest = 0.0;
@@ -147,7 +147,7 @@ TEST(MovingColumns, DependOnTheDryingTime) {
   EXPECT_GT(largest, 0.01) << "the longer it dries the wetter it is";
 }
 
-TEST(MovingColumns, RefitFindsTheDryingTime) {
+TEST(ParameterDependentColumns, RefitFindsTheDryingTime) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path flight = wet_flight(directory, 15.0);
   for (const double start : {2.0, 40.0}) {
@@ -159,7 +159,7 @@ TEST(MovingColumns, RefitFindsTheDryingTime) {
   }
 }
 
-TEST(MovingColumns, RefitFindsALargeDelay) {
+TEST(ParameterDependentColumns, RefitFindsALargeDelay) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path flight = late_flight(directory, 1.0, false);
   const pcor::RefitResult fit = pcor::refit({flight}, with_clock(0.0), {pcor::lams_reference()});
@@ -167,7 +167,7 @@ TEST(MovingColumns, RefitFindsALargeDelay) {
   EXPECT_NEAR(fit.parameters.back().value, 1.0, 0.01);
 }
 
-TEST(MovingColumns, RefitFindsTheSameDelayFromAnyStart) {
+TEST(ParameterDependentColumns, RefitFindsTheSameDelayFromAnyStart) {
   const pcor::test::TemporaryDirectory directory;
   const std::filesystem::path flight = late_flight(directory, 1.0, true);
   const pcor::FittedParameter first =
