@@ -1,13 +1,10 @@
 #include "campaign/effect_search.hpp"
 
-#include <boost/random/normal_distribution.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <utility>
 
 #include "numerics/chi_squared.hpp"
@@ -37,52 +34,6 @@ struct Tail {
   double share;
 };
 constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {widest_prior, 0.05}}};
-
-/// `chi2_one_dof` from a table, because draws call it thousands of times.
-class EquivalentTable {
- public:
-  explicit EquivalentTable(Eigen::Index degrees_of_freedom)
-      : freedom_(static_cast<double>(degrees_of_freedom)) {
-    for (std::size_t i = 0; i <= steps; ++i)
-      values_.push_back(chi2_one_dof(static_cast<double>(i) * width, freedom_));
-  }
-  double operator()(double chi2) const {
-    const double position = chi2 / width;
-    const auto before = static_cast<std::size_t>(position);
-    if (before >= steps) return chi2_one_dof(chi2, freedom_);
-    const double part = position - static_cast<double>(before);
-    return values_[before] + part * (values_[before + 1] - values_[before]);
-  }
-
- private:
-  static constexpr std::size_t steps = 400;
-  static constexpr double width = 0.1;
-  double freedom_;
-  std::vector<double> values_;
-};
-
-/// Greatest equivalent score among groups for each column of `scores` (a draw); the rows are the directions
-/// of all groups in order.
-std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<Directions>& directions) {
-  std::vector<EquivalentTable> tables;
-  Eigen::Index max_freedom = 0;
-  for (const Directions& each : directions) max_freedom = std::max(max_freedom, each.degrees_of_freedom);
-  for (Eigen::Index k = 0; k <= max_freedom; ++k) tables.emplace_back(k);
-  std::vector<double> result(static_cast<std::size_t>(scores.cols()), 0.0);
-  for (Eigen::Index draw = 0; draw < scores.cols(); ++draw) {
-    Eigen::Index row = 0;
-    double& maximum = result[static_cast<std::size_t>(draw)];
-    for (const auto& [count, degrees_of_freedom] : directions) {
-      const double chi2 = scores.col(draw).segment(row, count).squaredNorm();
-      row += count;
-      if (degrees_of_freedom == 0 || chi2 <= maximum) continue;  // the equivalent never exceeds chi2
-      maximum = std::max(maximum, degrees_of_freedom == 1
-                                      ? chi2
-                                      : tables[static_cast<std::size_t>(degrees_of_freedom)](chi2));
-    }
-  }
-  return result;
-}
 
 /// Columns of a group that the base and its other columns do not imitate, ascending.
 /// @param products of its columns, of unit length, after the base
@@ -302,16 +253,8 @@ double EffectSearch::threshold_of(const Conditional& conditional, const std::vec
   std::vector<Directions> directions;
   const Eigen::MatrixXd turn = normal_turn(conditional, groups, directions);
   if (turn.cols() == 0) return std::numeric_limits<double>::infinity();
-  std::mt19937_64 engine(options.seed);
-  boost::random::normal_distribution<double> normal;  // the same on every machine
-  const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
-      turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
-  const Eigen::MatrixXd root = covariance_root(turn.transpose() * conditional.information * turn);
-  std::vector<double> maxima = maxima_of(root * independent, directions);
-  const auto position =
-      static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));
-  std::nth_element(maxima.begin(), maxima.begin() + position, maxima.end());
-  return maxima[static_cast<std::size_t>(position)];
+  return quantile_of_maximum(turn.transpose() * conditional.information * turn, directions,
+                             options.confidence, options.draws, options.seed);
 }
 
 std::vector<Eigen::VectorXd> EffectSearch::rows_after(std::size_t group,

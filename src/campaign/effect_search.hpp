@@ -8,6 +8,7 @@
 
 #include <pcor/model_io/model_definition.hpp>
 #include "campaign/candidate.hpp"
+#include "campaign/maximum_score.hpp"
 #include "campaign/whitened.hpp"
 
 namespace pcor::internal {
@@ -69,12 +70,6 @@ struct SearchOptions {
 
 /// Standard deviation of the widest prior of an effect, in usual sizes.
 inline constexpr double widest_prior = 10.0;
-
-/// Directions of a group of columns.
-struct Directions {
-  Eigen::Index count;
-  Eigen::Index degrees_of_freedom;  ///< number of directions that the other columns do not imitate
-};
 
 /// Score of a group in addition to a set of others.
 struct GroupScore {
