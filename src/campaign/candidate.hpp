@@ -56,7 +56,7 @@ struct BaseCoefficient {
   double value = 0.0;  ///< value in its model
   Bounds bounds{};
   bool of_reference = false;
-  double usual = 0.0;  ///< typical size in its unit; 0 if unknown
+  double typical = 0.0;  ///< typical size in its unit; 0 if unknown
 };
 
 /// Candidates, and the models extended by them.

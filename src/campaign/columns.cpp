@@ -33,7 +33,7 @@ struct Evaluation {
   std::size_t width = 0;
   std::vector<EffectJet> parameters{};
   Quantity memory = Quantity::count;  // history input of the candidate,
-  std::vector<double> remembered{};   // replaces the column of the samples; empty if unknown
+  std::vector<double> history{};      // replaces the column of the samples; empty if unknown
 };
 
 /// System in a residual, and the indices of its parameters among the parameters of the residual: parameters
@@ -63,8 +63,8 @@ std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t r
     evaluation.location = location - locations.begin();
     if (candidate.memory != 0.0) {  // the history starts from the samples' inputs
       evaluation.memory = memory_of(candidate.effect).of;
-      evaluation.remembered =
-          remembered(evaluation.memory, inputs, samples.time, samples.step, candidate.memory);
+      evaluation.history =
+          history_input(evaluation.memory, inputs, samples.time, samples.step, candidate.memory);
     }
     const std::vector<double>& neutral = candidate.effect.parameters;
     for (std::size_t first = 0; first < candidate.tested.size(); first += effect_jet_width) {
@@ -157,13 +157,13 @@ void put_candidates(const Chain& chain, const ModelSamples& inputs,
     State<double> state;
     NoQualityFlags flags;
     for (const auto& [quantity, series] : read) state[quantity] = series[sample];
-    chain.measure(state, chain.parameters().data(), flags);
+    chain.correct_inputs(state, chain.parameters().data(), flags);
     for (const Evaluation& each : evaluations) {
-      const bool remembers = !each.remembered.empty();
-      const double usual = remembers ? state[each.memory] : 0.0;
-      if (remembers) state[each.memory] = each.remembered[sample];
+      const bool has_history = !each.history.empty();
+      const double of_model = has_history ? state[each.memory] : 0.0;
+      if (has_history) state[each.memory] = each.history[sample];
       const EffectJet value = chain.effect_value(each.effect, state, each.parameters.data());
-      if (remembers) state[each.memory] = usual;
+      if (has_history) state[each.memory] = of_model;
       const double by_this_location = by_location.cols() == 0 ? 1.0 : by_location(as_index(k), each.location);
       for (std::size_t p = 0; p < each.width; ++p)
         columns(as_index(sample), as_index(each.first_column + p)) =
@@ -226,9 +226,9 @@ void complete(const CandidateModels& set, bool two_systems, const std::vector<st
 }
 
 /// Amounts that the candidates on the model's system add at its locations, per unit of each coefficient.
-AddedEffects effects_of(const CandidateModels& set, std::size_t reference, const System& system,
-                        const FlightSamples& samples, const std::vector<std::size_t>& used) {
-  AddedEffects effects;
+EffectAmounts effects_of(const CandidateModels& set, std::size_t reference, const System& system,
+                         const FlightSamples& samples, const std::vector<std::size_t>& used) {
+  EffectAmounts effects;
   for (std::size_t location = system.first_location; location < system.end; ++location)
     effects.amounts_of_model.push_back(location);
   effects.at.resize(set.first_column(set.candidates.size()), 0);
@@ -279,21 +279,22 @@ void put_wind_columns(const GpsRows& rows, const std::vector<std::size_t>& used,
 void put_gps(GpsKind kind, const CandidateModels& set, const System& system, const LinearRows& rows,
              FlightColumns& columns) {
   const FlightSamples& samples = *columns.samples;
-  const AddedEffects effects = effects_of(set, columns.reference, system, samples, rows.used());
+  const EffectAmounts effects = effects_of(set, columns.reference, system, samples, rows.used());
   const auto rows_at = [&](double warmer) {
     return gps_rows(kind, samples, system.model, rows.used(), rows.residuals().parameters().data(),
                     system.free, effects, warmer);
   };
   const GpsRows found = rows_at(0.0);
   const Eigen::Index free = as_index(system.free.size());
-  std::vector<double> usual;
-  for (std::size_t k = 0; k < system.free.size(); ++k) usual.push_back(set.base[k].usual);
+  std::vector<double> typical_sizes;
+  for (std::size_t k = 0; k < system.free.size(); ++k) typical_sizes.push_back(set.base[k].typical);
   columns.is_by_gps = true;
   if (kind == GpsKind::wind) put_wind_columns(found, rows.used(), free, columns);
   if (found.defect.rows() == 0) return;
-  columns.gps = gps_system(found, usual);
+  columns.gps = gps_system(found, typical_sizes);
   if (columns.gps.rows.size() == 0) return;
-  if (kind == GpsKind::height) columns.gps = gps_system(rows_at(thermometer_of(columns.gps, usual)), usual);
+  if (kind == GpsKind::height)
+    columns.gps = gps_system(rows_at(thermometer_of(columns.gps, typical_sizes)), typical_sizes);
   // The coefficients of other systems do not change a comparison with GPS.
   const Eigen::MatrixXf rows_of_gps = std::move(columns.gps.rows);
   const Eigen::Index others = columns.base.cols() - free;

@@ -217,8 +217,8 @@ GroupScore EffectSearch::score_in(const Conditional& conditional, std::size_t gr
     if (result.estimate[k] + slack < bounds.lower || result.estimate[k] - slack > bounds.upper)
       result.possible = false;
     const auto number = static_cast<std::size_t>(k);
-    if (number < columns.usual.size() && columns.usual[number] != 0.0 &&
-        std::abs(result.estimate[k]) - slack > columns.max_times_usual * std::abs(columns.usual[number]))
+    if (number < columns.typical.size() && columns.typical[number] != 0.0 &&
+        std::abs(result.estimate[k]) - slack > columns.max_relative_size * std::abs(columns.typical[number]))
       result.possible = false;
   }
   return result;
@@ -323,7 +323,7 @@ Eigen::VectorXd EffectSearch::precision_of(std::size_t group, double times) cons
   // Unknown sizes are limited by the rest of the residual.
   Eigen::VectorXd precision =
       Eigen::VectorXd::Constant(columns.count, 1.0 / static_cast<double>(scores_->row_count));
-  for (std::size_t k = 0; k < columns.usual.size(); ++k) {
+  for (std::size_t k = 0; k < columns.typical.size(); ++k) {
     if (columns.deviation(k) == 0.0) continue;
     const double scaled = scale_[base_ + columns.first + as_index(k)] / (columns.deviation(k) * times);
     precision[as_index(k)] = scaled * scaled;
@@ -412,10 +412,10 @@ void EffectSearch::improve(std::vector<std::size_t>& chosen, double price) const
 void EffectSearch::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
   constexpr double significant = 4.5;  // change of the log likelihood, chi2 of 9
   for (std::size_t& group : chosen) {
-    const auto usual = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
+    const auto first_shape = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
       return each.effect == groups_[group].effect && each.system == groups_[group].system;
     });
-    const auto first = static_cast<std::size_t>(usual - groups_.begin());
+    const auto first = static_cast<std::size_t>(first_shape - groups_.begin());
     if (first == group || is_absorbed(first)) continue;
     const double as_it_is = evidence(chosen);
     const std::size_t shape = std::exchange(group, first);

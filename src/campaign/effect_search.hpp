@@ -21,9 +21,9 @@ struct ColumnGroup {
   std::size_t system = 0;        ///< system on which the effect is: 0 for the model's own
   std::vector<Bounds> bounds{};  ///< coefficient of each column; an effect beyond them is impossible
   /// Usual size of each coefficient; 0 or empty if unknown.
-  std::vector<double> usual{};
-  /// An effect clearly beyond this number of usual sizes has another cause.
-  double max_times_usual = std::numeric_limits<double>::infinity();
+  std::vector<double> typical{};
+  /// An effect clearly beyond this number of typical sizes has another cause.
+  double max_relative_size = std::numeric_limits<double>::infinity();
   /// Columns of the uncertain shape, whose coefficients have a normal prior of variance 1; empty before the
   /// effect was chosen.
   Eigen::Index shape_first = 0;
@@ -33,7 +33,7 @@ struct ColumnGroup {
 
   /// Standard deviation of the size of a coefficient in nature; 0 if unknown.
   double deviation(std::size_t column) const {
-    return column < usual.size() ? spread_of_sizes * usual[column] : 0.0;
+    return column < typical.size() ? spread_of_sizes * typical[column] : 0.0;
   }
 };
 
@@ -68,7 +68,7 @@ struct SearchOptions {
   std::vector<std::size_t> references{};  ///< reference of each flight; empty: one for all
 };
 
-/// Standard deviation of the widest prior of an effect, in usual sizes.
+/// Standard deviation of the widest prior of an effect, in typical sizes.
 inline constexpr double widest_prior = 10.0;
 
 /// Score of a group in addition to a set of others.
@@ -117,9 +117,9 @@ class EffectSearch {
   GroupScore score(std::size_t group, const std::vector<std::size_t>& others) const;
 
   /// Log ratio of the marginal likelihood of a set of effects to that of the empty set. The noise level and
-  /// the coefficients are integrated out: flat prior for model coefficients, usual sizes for effects. An
-  /// effect of ten times its usual size is possible but needs more evidence (the tails are those of a mixture
-  /// of normal distributions).
+  /// the coefficients are integrated out: flat prior for model coefficients, typical sizes for effects. An
+  /// effect of ten times its typical size is possible but needs more evidence (the tails are those of a
+  /// mixture of normal distributions).
   ///
   /// @param uncertain effects whose uncertain shapes are part of the set
   double evidence(const std::vector<std::size_t>& set, const std::vector<std::size_t>& uncertain) const;
@@ -128,7 +128,7 @@ class EffectSearch {
   /// Largest correlation between two groups after base and `others`; signed if both have one column.
   double correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const;
 
-  /// Coefficients that the flights hardly constrain have their usual size as error.
+  /// Coefficients that the flights hardly constrain have their typical size as error.
   SearchFit fit(const std::vector<std::size_t>& chosen) const;
 
   /// Variance of the whitened residuals after a fit of base and `chosen`; 1 if the noise model holds.

@@ -22,7 +22,7 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t max_open = 16;  // files; HDF5 keeps 5 MB for each
+constexpr std::size_t max_open = 16;  // files; HDF5 and `BlockCache` keep 9 MB for each
 
 std::size_t bytes_of(const ModelSamples& samples, std::size_t records) {
   return (samples.columns.size() + samples.parameter_dependent.size()) * records +

@@ -174,7 +174,7 @@ using Derivatives = Eigen::Matrix<double, of_log_pressure + 1, Eigen::Dynamic, E
 class Differentiation {
  public:
   Differentiation(const ModelDefinition& file, const ModelSamples& inputs, const double* parameters,
-                  const std::vector<std::size_t>& requested, const AddedEffects& effects)
+                  const std::vector<std::size_t>& requested, const EffectAmounts& effects)
       : law_(file, inputs), parameters_(parameters), requested_(requested), at_location_(effects.at) {
     requested_.insert(requested_.end(), effects.amounts_of_model.begin(), effects.amounts_of_model.end());
     for (std::size_t& location : at_location_) location += requested.size();
@@ -336,7 +336,7 @@ WindSeries wind_of(const FlightSamples& samples, const Air& air) {
 
 GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
                   const std::vector<std::size_t>& used, const double* parameters,
-                  const std::vector<std::size_t>& requested, const AddedEffects& effects) {
+                  const std::vector<std::size_t>& requested, const EffectAmounts& effects) {
   const Air air = air_of(samples, file, parameters);
   const std::size_t size = samples.time.size();
   const Series& heading = *samples.reference.find(Quantity::heading);
@@ -418,7 +418,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelDefinition& file,
 
 GpsRows height_rows(const FlightSamples& samples, const ModelDefinition& file,
                     const std::vector<std::size_t>& used, const double* parameters,
-                    const std::vector<std::size_t>& requested, const AddedEffects& effects, double warmer) {
+                    const std::vector<std::size_t>& requested, const EffectAmounts& effects, double warmer) {
   const Air air = air_of(samples, file, parameters);
   const std::size_t size = samples.time.size();
   const Series& altitude = *samples.reference.find(Quantity::altitude);
@@ -520,7 +520,7 @@ Eigen::VectorXd gps_nuisance_deviations() {
 
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& requested, const AddedEffects& effects, double warmer) {
+                 const std::vector<std::size_t>& requested, const EffectAmounts& effects, double warmer) {
   return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, requested, effects)
                                : height_rows(samples, model, used, parameters, requested, effects, warmer);
 }

@@ -68,7 +68,7 @@ struct GpsRows {
 };
 
 /// Effects that the model lacks: each coefficient adds an amount at a location of the model.
-struct AddedEffects {
+struct EffectAmounts {
   std::vector<std::size_t> amounts_of_model{};  ///< parameters of the model, the amounts at its locations
   std::vector<std::size_t> at{};                ///< index of the location of each coefficient among these
   /// Amounts per unit of each coefficient, one row per sample, at these inputs of the model; finite.
@@ -92,7 +92,7 @@ struct AddedEffects {
 /// column omits
 GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelDefinition& model,
                  const std::vector<std::size_t>& used, const double* parameters,
-                 const std::vector<std::size_t>& requested, const AddedEffects& effects = {},
+                 const std::vector<std::size_t>& requested, const EffectAmounts& effects = {},
                  double warmer = 0.0);
 
 }  // namespace pcor::internal

@@ -50,12 +50,12 @@ void GpsSystem::keep(const std::vector<Eigen::Index>& kept, Eigen::Index first, 
   rows = Eigen::MatrixXf(rows(Eigen::all, all));
 }
 
-GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
+GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& typical_sizes) {
   GpsSystem system;
-  const Eigen::Index law = as_index(usual.size());
+  const Eigen::Index law = as_index(typical_sizes.size());
   GpsPrior prior{Eigen::VectorXd::Zero(law + gps_nuisance_count), Eigen::VectorXd(law + gps_nuisance_count)};
   for (Eigen::Index k = 0; k < law; ++k)
-    prior.deviation[k] = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];
+    prior.deviation[k] = gps_prior_in_typical_sizes * typical_sizes[static_cast<std::size_t>(k)];
   prior.deviation.tail(gps_nuisance_count) = gps_nuisance_deviations();
   const GpsRows law_rows = without_effects(rows, law);
   Eigen::VectorXd outliers = Eigen::VectorXd::Zero(rows.rows.rows());
@@ -80,16 +80,16 @@ GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual) {
   return system;
 }
 
-double thermometer_of(const GpsSystem& system, const std::vector<double>& usual) {
-  const Eigen::Index law = as_index(usual.size());
+double thermometer_of(const GpsSystem& system, const std::vector<double>& typical_sizes) {
+  const Eigen::Index law = as_index(typical_sizes.size());
   const Eigen::Index columns = system.rows.cols() - 1;
-  std::vector<Eigen::Index> indices(usual.size());
+  std::vector<Eigen::Index> indices(typical_sizes.size());
   std::iota(indices.begin(), indices.end(), Eigen::Index{0});
   for (Eigen::Index n = columns - gps_shared_nuisances; n <= columns; ++n) indices.push_back(n);
   const Eigen::MatrixXd rows = system.rows(Eigen::all, indices).cast<double>();
   Eigen::MatrixXd products = rows.transpose() * rows;
   for (Eigen::Index k = 0; k < law; ++k) {
-    const double deviation = gps_prior_in_typical_sizes * usual[static_cast<std::size_t>(k)];
+    const double deviation = gps_prior_in_typical_sizes * typical_sizes[static_cast<std::size_t>(k)];
     if (deviation > 0.0) products(k, k) += 1.0 / (deviation * deviation);
   }
   products.diagonal().segment(law + 1, gps_shared_nuisances - 1).array() += 1.0;
@@ -119,7 +119,7 @@ std::vector<Eigen::MatrixXd> gps_products_of_parts(GpsKind kind, const FlightSam
   ModelDefinition with_amount = model;
   with_amount.model.additions = {EffectLocation::static_defect};
   const std::vector<double> all = ModelOnSamples(with_amount, samples.model).parameters();
-  AddedEffects effects;
+  EffectAmounts effects;
   effects.amounts_of_model = {all.size() - 1};
   effects.at.assign(parts.size(), 0);
   effects.amounts = [&](const ModelSamples&) {

@@ -37,12 +37,13 @@ struct GpsSystem {
 /// absent effect is distributed as chi2. Noise and outliers are fitted to the flight with the coefficients of
 /// the law free, within a prior of their typical sizes about the values of the model, and without the
 /// effects.
-/// @param usual typical size of each coefficient of the law, the first columns, in its unit; 0: unknown
-GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& usual);
+/// @param typical_sizes typical size of each coefficient of the law, the first columns, in its unit; 0:
+/// unknown
+GpsSystem gps_system(const GpsRows& rows, const std::vector<double>& typical_sizes);
 
 /// Error of the thermometer, K, with ten times the deviation of its prior, and the law free within its own
-/// prior. @param usual as in `gps_system`
-double thermometer_of(const GpsSystem& system, const std::vector<double>& usual);
+/// prior. @param typical_sizes as in `gps_system`
+double thermometer_of(const GpsSystem& system, const std::vector<double>& typical_sizes);
 
 /// Warning that parts of the flights, or wind and height, disagree by more than their noise explains;
 /// empty below a factor of two. @param variance factor of the variance of GPS, see `variance_factor`

@@ -39,9 +39,10 @@ class EquivalentTable {
 /// of all groups in order.
 std::vector<double> maxima_of(const Eigen::MatrixXd& scores, const std::vector<Directions>& directions) {
   std::vector<EquivalentTable> tables;
-  Eigen::Index most = 0;
-  for (const Directions& each : directions) most = std::max(most, each.degrees_of_freedom);
-  for (Eigen::Index k = 0; k <= most; ++k) tables.emplace_back(k);
+  Eigen::Index max_degrees_of_freedom = 0;
+  for (const Directions& each : directions)
+    max_degrees_of_freedom = std::max(max_degrees_of_freedom, each.degrees_of_freedom);
+  for (Eigen::Index k = 0; k <= max_degrees_of_freedom; ++k) tables.emplace_back(k);
   std::vector<double> result(static_cast<std::size_t>(scores.cols()), 0.0);
   for (Eigen::Index draw = 0; draw < scores.cols(); ++draw) {
     Eigen::Index row = 0;

@@ -13,8 +13,8 @@ struct Directions {
   Eigen::Index degrees_of_freedom;  ///< number of directions that the other columns do not imitate
 };
 
-/// Value that the greatest score of all groups exceeds with one minus this probability, by noise alone: the
-/// chi2 of one degree of freedom, from random normal draws.
+/// Quantile of the greatest score of all groups under noise alone, from random normal draws; scores are
+/// equivalent chi2 of one degree of freedom (`chi2_one_dof`).
 /// @param covariance of the scores of the directions of all groups, in order @param seed of the draws
 double quantile_of_maximum(const Eigen::MatrixXd& covariance, const std::vector<Directions>& directions,
                            double probability, std::size_t draws, std::uint64_t seed);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 
 namespace pcor::internal {
 

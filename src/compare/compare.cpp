@@ -16,7 +16,7 @@
 #include "base/phrasing.hpp"
 #include "campaign/circular_pressure.hpp"
 #include "campaign/gps_system.hpp"
-#include "campaign/reference_doubt.hpp"
+#include "campaign/reference_uncertainty.hpp"
 #include "campaign/whitened.hpp"
 #include "compare/model_sums.hpp"
 #include "numerics/binned_residual.hpp"
@@ -272,16 +272,17 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
       samples.push_back(flights.samples(number, each.compared->model, *each.reference, options.mask));
     return samples;
   };
-  std::vector<ReferenceDoubt> doubts;
+  std::vector<ReferenceUncertainty> uncertainties;
   for (const Pairing& each : pairings)
-    doubts.emplace_back(each.compared->model, *each.reference, !each.reference->is_of_one_sample());
+    uncertainties.emplace_back(each.compared->model, *each.reference, !each.reference->is_of_one_sample());
   const auto make = [&](const SamplesOfPairings& samples, bool with_series,
                         std::vector<SummedRecords>& records) {
     Notes notes;
     FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series, records);
     part.notes = std::move(notes);
     for (std::size_t m = 0; m < pairings.size(); ++m) {
-      part.models[m].doubt = doubts[m].columns(samples[m], records[m].parts.front()).colwise().sum();
+      part.models[m].uncertainty =
+          uncertainties[m].columns(samples[m], records[m].parts.front()).colwise().sum();
     }
     return part;
   };
@@ -312,13 +313,13 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   if (result.masks[0] == 0) return result;
   for (std::size_t m = 0; m < pairings.size(); ++m) {
     const auto& [compared, reference, rank] = pairings[m];
-    const std::string static_pressure = compared->model.variable_of(Quantity::static_pressure);
+    const std::string static_variable = compared->model.variable_of(Quantity::static_pressure);
     const std::string circular = circular_pressure(flights, compared->model, *reference);
-    if (reference->model() != nullptr && !circular.empty() && circular == static_pressure) {
+    if (reference->model() != nullptr && !circular.empty() && circular == static_variable) {
       result.notes.push_back(warning_note(
           fmt::format("give a reference with another static pressure: {} uses {}, as the model "
                       "does; the residual of '{}' is the difference of two laws and does not test it",
-                      reference->name(), static_pressure, compared->name)));
+                      reference->name(), static_variable, compared->name)));
     }
     add_variances(m, flights.partition(), records, parts);
     ModelSums sums;

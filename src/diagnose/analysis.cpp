@@ -407,7 +407,7 @@ Eigen::VectorXd Analysis::precision_of(const std::vector<std::size_t>& groups) c
   precision.head(base_) = prior_;
   Eigen::Index position = base_;
   for (const std::size_t group : groups) {
-    for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
+    for (std::size_t k = 0; k < groups_[group].typical.size(); ++k) {
       const double deviation = groups_[group].deviation(k);
       if (deviation > 0.0) precision[position + as_index(k)] = 1.0 / (deviation * deviation);
     }
@@ -416,7 +416,7 @@ Eigen::VectorXd Analysis::precision_of(const std::vector<std::size_t>& groups) c
   return precision;
 }
 
-/// Coefficients that the rows hardly constrain stay near their usual size: a prior as in the search.
+/// Coefficients that the rows hardly constrain stay near their typical size: a prior as in the search.
 Eigen::VectorXd Analysis::solution(const Eigen::MatrixXd& products, double rows,
                                    const std::vector<std::size_t>& groups) const {
   const Eigen::Index count = products.cols() - 1;

@@ -228,8 +228,8 @@ Eigen::VectorXd prior_of(const References& references, const std::vector<BaseCoe
   Eigen::VectorXd precision = Eigen::VectorXd::Zero(as_index(base.size()));
   if (!gps_kind(*references.front())) return precision;
   for (std::size_t b = 0; b < base.size(); ++b) {
-    if (base[b].usual > 0.0)
-      precision[as_index(b)] = std::pow(gps_prior_in_typical_sizes * base[b].usual, -2.0);
+    if (base[b].typical > 0.0)
+      precision[as_index(b)] = std::pow(gps_prior_in_typical_sizes * base[b].typical, -2.0);
   }
   return precision;
 }
@@ -281,7 +281,7 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.is_refitted = !gps_kind(first_of(references));
   const Eigen::VectorXd base = changes(analysis, {}, diagnosis.is_refitted);
-  diagnosis.model_coefficients = refitted_coefficients(analysis, set.base, base);
+  diagnosis.refitted_coefficients = refitted_coefficients(analysis, set.base, base);
   diagnosis.flights =
       flights_of(analysis, base, changes(analysis, analysis.result().chosen, diagnosis.is_refitted));
   diagnosis.residual_rms = rms_of(
@@ -295,8 +295,8 @@ Diagnosis diagnosis_with(const FlightSet& files, const ModelDefinition& model,
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
-  doubt_by_size(diagnosis);
-  if (diagnosis.is_refitted) doubt_by_refit(diagnosis);
+  add_rival_by_size(diagnosis);
+  if (diagnosis.is_refitted) warn_by_refit(diagnosis);
   diagnosis.verdict = verdict_of(diagnosis, explained, remaining_chi2);
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());

@@ -97,7 +97,7 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
 std::string refitted_text(const Diagnosis& diagnosis) {
   if (!diagnosis.is_refitted) return "the coefficients as given";
   const bool with_reference =
-      std::any_of(diagnosis.model_coefficients.begin(), diagnosis.model_coefficients.end(),
+      std::any_of(diagnosis.refitted_coefficients.begin(), diagnosis.refitted_coefficients.end(),
                   [](const CoefficientEstimate& each) { return is_on_other_system(each.name); });
   return with_reference ? "the coefficients of the model and of the reference system fitted again"
                         : "the model's own coefficients fitted again";
@@ -195,7 +195,8 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
       "pcor refit adds the misfit of the model and the calibration of the reference. The decrease of chi2 is "
       "in units of the noise with its drift: for one fitted coefficient, the square of its change over its "
       "error. The search gives less weight to slow changes, so its chi2 differs. ";
-  const auto model_end = panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.model_coefficients);
+  const auto model_end =
+      panel.coefficients.begin() + static_cast<std::ptrdiff_t>(panel.model_coefficient_count);
   if (std::any_of(panel.coefficients.begin(), model_end,
                   [](const WhatIfCoefficient& each) { return is_on_other_system(each.name); })) {
     panel.caption += " The coefficients of the reference system keep their input values.";

@@ -50,7 +50,8 @@ ModelEffect with_estimate(const Candidate& candidate, const Eigen::VectorXd& est
 }
 
 /// Parameters that these flights do not determine.
-std::vector<std::string> held_of(const Candidate& candidate, const std::vector<Eigen::Index>& identifiable) {
+std::vector<std::string> undetermined_parameters(const Candidate& candidate,
+                                                 const std::vector<Eigen::Index>& identifiable) {
   std::vector<std::string> held;
   for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
     if (std::find(identifiable.begin(), identifiable.end(), as_index(k)) == identifiable.end())
@@ -109,10 +110,10 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
 /// uncertain.
 std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
                              std::size_t winner, const std::vector<std::size_t>& chosen) {
-  constexpr double doubt_of_shape = 0.1;  // relative error of the shapes in the catalogue
+  constexpr double uncertainty_of_shape = 0.1;  // relative error of the shapes in the catalogue
   const EffectSearch& search = analysis.search();
   const auto margin = [](double chi2) {
-    return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
+    return 0.5 * (alias_margin + uncertainty_of_shape * uncertainty_of_shape * chi2);
   };
   const double widest = margin(search.score(winner, chosen).chi2);
   const std::vector<std::size_t> others = set_without(chosen, winner);
@@ -151,7 +152,7 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     alias.effect = candidates[g].id;
     alias.title = candidates[g].title;
     alias.correction = with_estimate(candidates[g], score.estimate);
-    alias.fixed = held_of(candidates[g], search.identifiable(g));
+    alias.fixed = undetermined_parameters(candidates[g], search.identifiable(g));
     alias.is_shared = candidates[g].is_shared;
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
@@ -183,9 +184,9 @@ struct Added {
 /// for an effect on another system, against the references that see it; and the largest rms against a single
 /// reference. The fraction that the model does not absorb is that of all references together.
 /// @param coefficients of all columns @param effect_coefficients those of the effect
-void measure(const Analysis& analysis, const References& references, std::size_t group,
-             const Eigen::VectorXd& coefficients, const Eigen::VectorXd& effect_coefficients,
-             const Candidate& candidate, Finding& finding) {
+void set_contributions(const Analysis& analysis, const References& references, std::size_t group,
+                       const Eigen::VectorXd& coefficients, const Eigen::VectorXd& effect_coefficients,
+                       const Candidate& candidate, Finding& finding) {
   const auto of_flights = analysis.whole_partition().all_gather_flights<Added>([&](std::size_t f) {
     Added of_flight;
     const std::vector<double> added = analysis.added_by(f, group, coefficients);
@@ -247,8 +248,8 @@ std::string component_of(const Candidate& candidate) {
 }
 
 /// Family, locations, shapes, size and probability of a finding; equal prior odds for all rivals.
-void describe(const std::vector<Candidate>& candidates, std::size_t winner, const std::vector<Rival>& rivals,
-              Finding& finding) {
+void set_alternatives(const std::vector<Candidate>& candidates, std::size_t winner,
+                      const std::vector<Rival>& rivals, Finding& finding) {
   const Candidate& winning = candidates[winner];
   if (const EffectInfo* const info = effect_named(winning.effect.id))
     finding.family = std::string(info->family);
@@ -320,8 +321,8 @@ std::vector<Finding> findings_of(const Analysis& analysis, const References& ref
     const std::vector<Eigen::Index>& identifiable = analysis.search().identifiable(group);
     finding.estimates = estimates_of(candidate, identifiable, effect_coefficients,
                                      covariance.block(position, position, count, count));
-    finding.fixed = held_of(candidate, identifiable);
-    measure(analysis, references, group, coefficients, effect_coefficients, candidate, finding);
+    finding.fixed = undetermined_parameters(candidate, identifiable);
+    set_contributions(analysis, references, group, coefficients, effect_coefficients, candidate, finding);
     position += count;
     const std::vector<std::size_t> without = set_without(chosen, group);
     // In units of the noise with the effect: the score of the search has the noise without it.
@@ -343,7 +344,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const References& ref
     finding.evidence = std::move(events);
     const std::vector<Rival> rivals = rivals_of(analysis, candidates, group, chosen);
     finding.aliases = aliases_of(analysis, candidates, group, chosen, rivals);
-    describe(candidates, group, rivals, finding);
+    set_alternatives(candidates, group, rivals, finding);
     findings.push_back(std::move(finding));
   }
   return findings;
@@ -479,7 +480,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   return limits;
 }
 
-void doubt_by_size(Diagnosis& diagnosis) {
+void add_rival_by_size(Diagnosis& diagnosis) {
   for (Finding& finding : diagnosis.findings) {
     if (!is_of_impossible_size(finding) || !finding.rival.empty() || predicts_held_out_parts(finding))
       continue;
@@ -492,7 +493,7 @@ void doubt_by_size(Diagnosis& diagnosis) {
   }
 }
 
-void doubt_by_refit(Diagnosis& diagnosis) {
+void warn_by_refit(Diagnosis& diagnosis) {
   constexpr double min_rms = 0.05;  // hPa, noise of a static pressure
   for (const Finding& finding : diagnosis.findings) {
     const double removed = finding.rms_before * finding.rms_before - finding.rms_after * finding.rms_after;
@@ -509,7 +510,7 @@ void doubt_by_refit(Diagnosis& diagnosis) {
   }
 }
 
-void doubt_by_atmosphere(Diagnosis& diagnosis) {
+void add_rival_by_atmosphere(Diagnosis& diagnosis) {
   constexpr double min_increase = 1.02;
   for (Finding& finding : diagnosis.findings) {
     const bool is_impossible = is_of_impossible_size(finding);

@@ -47,18 +47,18 @@ inline bool is_of_impossible_size(const Finding& finding) {
 
 /// An effect of an impossible size may be the image of another error, unless it predicts held-out parts: "an
 /// unknown error" becomes its rival, with a note.
-void doubt_by_size(Diagnosis& diagnosis);
+void add_rival_by_size(Diagnosis& diagnosis);
 
 /// The size of an effect is estimated together with drift, from its faster variations. A note warns of an
 /// effect of more than 0.05 hPa and half of the held-out rms if a refit with it decreases this rms by less
 /// than a fifth, and its square by less than half of the square of the size; and of any effect with which
 /// this rms increases.
-void doubt_by_refit(Diagnosis& diagnosis);
+void warn_by_refit(Diagnosis& diagnosis);
 
 /// By GPS alone, variations of the atmosphere beyond their model look like an effect: a finding that does not
 /// clearly predict held-out parts may be one. So may a finding that increases their rms: its evidence is in
 /// fast variations, which the filter of a receiver changes. So may a finding of an impossible size: a wind
 /// that depends on the place is the same in held-out parts.
-void doubt_by_atmosphere(Diagnosis& diagnosis);
+void add_rival_by_atmosphere(Diagnosis& diagnosis);
 
 }  // namespace pcor::internal

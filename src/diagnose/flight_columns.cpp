@@ -217,10 +217,10 @@ void hold_imitated_coefficients(CandidateSet& set, PartitionedColumns& columns, 
   std::vector<BaseCoefficient> base;
   for (Eigen::Index k = 0; k < count; ++k) {
     BaseCoefficient& coefficient = set.base[static_cast<std::size_t>(k)];
-    if (coefficient.of_reference && coefficient.usual > 0.0) {
+    if (coefficient.of_reference && coefficient.typical > 0.0) {
       const Eigen::VectorXd across = sums(kept, k);
       const double remaining = sums(k, k) - across.dot(pseudo_solution(sums(kept, kept), across));
-      if (!(coefficient.usual * std::sqrt(std::max(0.0, remaining) / sums(k, count)) > notable)) continue;
+      if (!(coefficient.typical * std::sqrt(std::max(0.0, remaining) / sums(k, count)) > notable)) continue;
     }
     kept.push_back(k);
     base.push_back(std::move(coefficient));
@@ -250,13 +250,13 @@ std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Ca
     if (candidate.is_of_reference())
       group.system = systems.emplace(candidate.system, systems.size() + 1).first->second;
     // Variations of the atmosphere are more likely than an effect beyond the widest prior.
-    if (is_by_gps) group.max_times_usual = widest_prior;
+    if (is_by_gps) group.max_relative_size = widest_prior;
     group.first = first;
     group.count = as_index(candidate.tested.size());
     group.has_uncertain_shape = has_uncertain_shape(candidate.effect);
     for (const CandidateParameter& parameter : candidate.tested) {
       group.bounds.push_back(parameter.bounds);
-      group.usual.push_back(parameter.typical);
+      group.typical.push_back(parameter.typical);
     }
     first += group.count;
   }

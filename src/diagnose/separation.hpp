@@ -38,7 +38,7 @@ std::vector<RegimeStatistics> regime_statistics(
 struct SeparationProblem {
   Eigen::MatrixXd information;        ///< base and candidates, from the existing flights
   double variance = 1.0;              ///< variance of the whitened residuals
-  std::vector<Eigen::Index> columns;  ///< of the effect
+  std::vector<Eigen::Index> columns;  ///< columns of the effect
   Eigen::VectorXd size;               ///< its coefficients
   /// Columns that may imitate the effect for each rival, including base and rival.
   std::vector<std::vector<Eigen::Index>> rests;

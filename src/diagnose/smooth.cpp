@@ -62,7 +62,7 @@ std::vector<double> VariableValues::quantiles(std::size_t number) const {
   return found;
 }
 
-bool Smooth::describe(const VariableValues& values) {
+bool Smooth::standardize(const VariableValues& values) {
   if (values.values.size() < 3) return false;
   centre_ = values.mean;
   deviation_ = values.deviation;
@@ -72,7 +72,7 @@ bool Smooth::describe(const VariableValues& values) {
 
 Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t columns) {
   Smooth smooth;
-  if (!smooth.describe(values)) return smooth;
+  if (!smooth.standardize(values)) return smooth;
   if (columns < degree) {
     smooth.columns_ = 1;
     return smooth;
@@ -96,7 +96,7 @@ Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t co
 
 Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns) {
   Smooth smooth;
-  if (columns < degree || !smooth.describe(values)) return smooth;
+  if (columns < degree || !smooth.standardize(values)) return smooth;
   smooth.columns_ = columns;
   // First and last spline are omitted: the straight line replaces one, and the sum of all would be a
   // constant.
@@ -107,7 +107,7 @@ Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns
 
 Smooth Smooth::periodic(const VariableValues& values, double turn) {
   Smooth smooth;
-  if (!smooth.describe(values)) return smooth;
+  if (!smooth.standardize(values)) return smooth;
   smooth.turn_ = turn;
   smooth.columns_ = 2 * harmonics;
   return smooth;

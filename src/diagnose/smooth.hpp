@@ -31,7 +31,7 @@ struct VariableValues {
   double deviation = 0.0;  ///< standard deviation
 };
 
-/// Functions of one variable that together describe any smooth dependence on it, without a constant.
+/// Functions of one variable that together standardize any smooth dependence on it, without a constant.
 class Smooth {
  public:
   /// Quadratic splines with knots at the values, or one function per value if there are only a few. The first
@@ -58,7 +58,7 @@ class Smooth {
 
  private:
   /// Takes centre and deviation of the values. @return whether they vary
-  bool describe(const VariableValues& values);
+  bool standardize(const VariableValues& values);
 
   std::size_t columns_ = 0;
   double centre_ = 0.0;

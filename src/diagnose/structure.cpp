@@ -128,8 +128,8 @@ StructureTest::StructureTest(const FlightPartition& partition, const BinnedFligh
 }
 
 double StructureTest::minus_likelihood(const Whitened& flights, double explained) const {
-  const double squares = std::max(flights.squares - explained, 1e-9 * flights.squares);
-  return flights.determinant + static_cast<double>(rows_) * std::log(squares);
+  const double remaining_squares = std::max(flights.squares - explained, 1e-9 * flights.squares);
+  return flights.determinant + static_cast<double>(rows_) * std::log(remaining_squares);
 }
 
 bool StructureTest::add(const TestedVariable& variable) {
@@ -274,8 +274,8 @@ void StructureTest::add(const TestedVariable& variable, const Smooth& smooth) {
     if (by_chance[k] / unit <= largest_[k]) continue;
     largest_[k] = std::max(largest_[k], chi2_one_dof(by_chance[k] / unit, structure.degrees_of_freedom));
   }
-  const double strong_freedom = strong_.empty() ? 0.0 : static_cast<double>(strong_.front().cols());
-  if (structure.gain - structure.degrees_of_freedom > strong_gain_ - strong_freedom) {
+  const double strong_columns = strong_.empty() ? 0.0 : static_cast<double>(strong_.front().cols());
+  if (structure.gain - structure.degrees_of_freedom > strong_gain_ - strong_columns) {
     strong_gain_ = structure.gain;
     strong_ = columns;
   }

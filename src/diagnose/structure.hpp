@@ -28,7 +28,7 @@ struct Structure : EmpiricalPredictor {
 /// for each minute.
 struct DrawnResiduals {
   Eigen::MatrixXd shifted{};           ///< one column per draw
-  Eigen::VectorXd residual{};          ///< whitened
+  Eigen::VectorXd residual{};          ///< whitened residual of each bin
   std::vector<Eigen::Index> minute{};  ///< number of the minute of each bin
   Eigen::MatrixXd signs{};             ///< one row per minute, one column per draw
 

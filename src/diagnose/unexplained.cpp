@@ -478,7 +478,7 @@ double add_unexplained(const Analysis& analysis, const FlightSet& files, const M
                        const ModelDefinition& extended, const References& references,
                        const DiagnoseOptions& options, Diagnosis& diagnosis) {
   if (gps_kind(*references.front())) {
-    doubt_by_atmosphere(diagnosis);
+    add_rival_by_atmosphere(diagnosis);
     diagnosis.notes.emplace_back(
         "give a laser or a second system as a further reference to test unnamed structure; variations of the "
         "atmosphere look the same in a comparison with GPS");

@@ -218,7 +218,7 @@ WhatIfPanel panel_of(const CandidateSet& set, const std::vector<WhatIfCandidate>
                      const std::vector<CoefficientEstimate>& start_values,
                      const std::string& flaps_variable) {
   WhatIfPanel panel;
-  panel.model_coefficients = set.base.size();
+  panel.model_coefficient_count = set.base.size();
   for (const BaseCoefficient& coefficient : set.base) {
     const auto start =
         std::find_if(start_values.begin(), start_values.end(),
@@ -321,7 +321,8 @@ WhatIf what_if(const FlightSet& flights, const ModelDefinition& model, const Ref
   WhatIf result;
   if (found.empty()) return result;
   WhatIfPanel& panel = result.panel;
-  panel = panel_of(set, found, options.model_coefficients, columns.flights.front().samples->flaps_variable);
+  panel =
+      panel_of(set, found, options.refitted_coefficients, columns.flights.front().samples->flaps_variable);
   panel.is_start_fitted = is_fitted_to(model, files);
   std::vector<std::size_t> are_found;
   for (std::size_t e = 0; e < found.size(); ++e) {

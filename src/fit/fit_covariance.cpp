@@ -71,22 +71,22 @@ class Blocks {
 /// Sums over the bins of a flight with one reference, for one set of equations.
 struct FlightScores {
   std::vector<Eigen::MatrixXd> blocks;  ///< derivatives of the scores by all parameters, and the scores
-  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero except for the last equations
-  Eigen::VectorXd zero;        ///< derivatives of the scores of all equations by the zero of the flight
-  Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
-  Eigen::MatrixXd doubt;       ///< derivatives by the errors of the reference, in standard uncertainties
+  Eigen::MatrixXd covariance;   ///< scores of all equations by the noise; zero except for the last equations
+  Eigen::VectorXd zero;         ///< derivatives of the scores of all equations by the zero of the flight
+  Eigen::MatrixXd misfit;       ///< derivatives of the sum of the scores by the misfit of the law
+  Eigen::MatrixXd uncertainty;  ///< derivatives by the errors of the reference, in standard uncertainties
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(blocks, covariance, zero, misfit, doubt);
+    archive(blocks, covariance, zero, misfit, uncertainty);
   }
 };
 
 /// Uncertainties of all references of a fit, by name: a thermometer error is common to all of them.
-std::vector<std::string> doubts_of(FitFlights& flights) {
+std::vector<std::string> uncertainties_of(FitFlights& flights) {
   std::vector<std::string> names;
   for (const FitFlights* const each : flights.joint()) {
-    for (const std::string& name : each->doubt().names()) {
+    for (const std::string& name : each->uncertainty().names()) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
@@ -218,11 +218,11 @@ class ScoreSums {
         fitted_(as_index(main_.setup().requested.size())),
         size_(fitted_ + as_index(main_.setup().fixed_with_error.size())),
         numbers_(equations),
-        doubts_(doubts_of(main_)),
+        uncertainties_(uncertainties_of(main_)),
         blocks_(numbers_.count(), Eigen::MatrixXd::Zero(fitted_, size_ + 1)),
         covariance_(Eigen::MatrixXd::Zero(fitted_, fitted_)),
         by_misfit_(Eigen::MatrixXd::Zero(fitted_, MisfitBasis::count())),
-        by_doubt_(Eigen::MatrixXd::Zero(fitted_, as_index(doubts_.size()))),
+        by_uncertainty_(Eigen::MatrixXd::Zero(fitted_, as_index(uncertainties_.size()))),
         zeros_(main_.partition().flights(), Eigen::VectorXd::Zero(fitted_)),
         stages_(main_.count()) {
     Eigen::Index first = 0;
@@ -253,7 +253,7 @@ class ScoreSums {
     found.matrix = Eigen::MatrixXd::Zero(size_, size_);
     found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted_, fitted_);
     found.jackknife = Eigen::VectorXd::Constant(fitted_, nan);
-    const Eigen::MatrixXd fixed = main_.task().doubt(held, held);
+    const Eigen::MatrixXd fixed = main_.task().uncertainty(held, held);
     found.matrix.bottomRightCorner(size_ - fitted_, size_ - fitted_) = fixed;
     // Parameters at a bound have no variance.
     std::vector<Eigen::Index> varying;
@@ -276,11 +276,11 @@ class ScoreSums {
     // Fitted coefficients compensate errors of fixed ones, on all flights alike.
     found.by_flights(varying, varying) = covariance;
     covariance += from_fixed;
-    const Eigen::MatrixXd by_doubt = -inverse * by_doubt_(varying, Eigen::all);
-    covariance += by_doubt * by_doubt.transpose();
-    found.doubts = doubts_;
-    found.by_doubt = Eigen::MatrixXd::Zero(fitted_, by_doubt.cols());
-    found.by_doubt(varying, Eigen::all) = by_doubt;
+    const Eigen::MatrixXd by_uncertainty = -inverse * by_uncertainty_(varying, Eigen::all);
+    covariance += by_uncertainty * by_uncertainty.transpose();
+    found.uncertainties = uncertainties_;
+    found.by_uncertainty = Eigen::MatrixXd::Zero(fitted_, by_uncertainty.cols());
+    found.by_uncertainty(varying, Eigen::all) = by_uncertainty;
     found.matrix(varying, varying) = 0.5 * (covariance + covariance.transpose());
     const Eigen::MatrixXd across = by_fixed * fixed;
     found.matrix.rightCols(size_ - fitted_)(varying, Eigen::all) = across;
@@ -298,11 +298,11 @@ class ScoreSums {
     Eigen::Index width;
     bool is_last;
     bool sees_law;
-    bool shares_noise;                         // static pressure in common with other references
-    std::vector<Eigen::MatrixXd> states{};     // one for each local flight
-    std::vector<Eigen::MatrixXd> by_doubt{};   // columns of the uncertainties of this reference
-    std::vector<Eigen::Index> doubt_places{};  // indices of these uncertainties
-    std::vector<Eigen::VectorXd> noise{};      // residual less misfit
+    bool shares_noise;                                // static pressure in common with other references
+    std::vector<Eigen::MatrixXd> states{};            // one for each local flight
+    std::vector<Eigen::MatrixXd> by_uncertainty{};    // columns of the uncertainties of this reference
+    std::vector<Eigen::Index> uncertainty_indices{};  // indices of these uncertainties
+    std::vector<Eigen::VectorXd> noise{};             // residual less misfit
   };
 
   void add(const FitEquations& each, FitFlights& flights, Eigen::Index first) {
@@ -315,7 +315,7 @@ class ScoreSums {
               is_last && main_.joint().size() > 1 && flights.task().reference.is_static_pressure()};
     if (part.sees_law) part.states = binned_states(flights);
     part.noise.resize(part.states.size());
-    add_doubt(part);
+    add_reference_uncertainty(part);
     std::vector<Eigen::MatrixXd> roots;
     auto block = blocks_.begin();
     auto zero = zeros_.begin();
@@ -325,23 +325,24 @@ class ScoreSums {
       *zero++ += flight.zero;
       if (part.shares_noise) roots.push_back(covariance_root(flight.covariance));
       by_misfit_.middleRows(first, part.width) += flight.misfit;
-      by_doubt_.middleRows(first, part.width) += flight.doubt;
+      by_uncertainty_.middleRows(first, part.width) += flight.uncertainty;
       for (const Eigen::MatrixXd& sums : flight.blocks) block++->middleRows(first, part.width) += sums;
     }
     if (part.shares_noise) static_references_.push_back({&flights, std::move(part.noise), std::move(roots)});
   }
 
-  void add_doubt(Part& part) const {
+  void add_reference_uncertainty(Part& part) const {
     FitFlights& flights = part.flights;
-    if (flights.doubt().empty()) return;
-    part.by_doubt = flights.of_local([&](std::size_t flight, const FitFlight& fit) {
-      const Eigen::MatrixXd columns = flights.doubt().columns(
+    if (flights.uncertainty().empty()) return;
+    part.by_uncertainty = flights.of_local([&](std::size_t flight, const FitFlight& fit) {
+      const Eigen::MatrixXd columns = flights.uncertainty().columns(
           fit.residuals().shared_samples(), fit.kept(),
           flight_parameters(fit.residuals(), flights.task(), solution_.values).data());
       return flights.weighted(flight, fit.linear_rows().bin_means(flights.bins(flight), columns));
     });
-    for (const std::string& name : flights.doubt().names())
-      part.doubt_places.push_back(std::find(doubts_.begin(), doubts_.end(), name) - doubts_.begin());
+    for (const std::string& name : flights.uncertainty().names())
+      part.uncertainty_indices.push_back(std::find(uncertainties_.begin(), uncertainties_.end(), name) -
+                                         uncertainties_.begin());
   }
 
   /// Also keeps the scores of a stage for the last equations, and the noise of the flight.
@@ -351,7 +352,7 @@ class ScoreSums {
                         Eigen::MatrixXd::Zero(fitted_, fitted_),
                         Eigen::VectorXd::Zero(fitted_),
                         Eigen::MatrixXd::Zero(part.width, by_misfit_.cols()),
-                        Eigen::MatrixXd::Zero(part.width, by_doubt_.cols())};
+                        Eigen::MatrixXd::Zero(part.width, by_uncertainty_.cols())};
     scores.blocks.assign(numbers_.count(flight), Eigen::MatrixXd::Zero(part.width, size_ + 1));
     const std::vector<double>& time = flights.bins(flight).time();
     if (time.empty()) return scores;
@@ -377,8 +378,9 @@ class ScoreSums {
     if (part.sees_law) scores.misfit = weighted.transpose() * misfit_.bumps(part.states[flight]);
     if (part.shares_noise)
       part.noise[flight] = flights.residual(flight, solution_.values) - misfit_.at(part.states[flight]);
-    if (!part.by_doubt.empty())
-      scores.doubt(Eigen::all, part.doubt_places) = slope * part_columns.transpose() * part.by_doubt[flight];
+    if (!part.by_uncertainty.empty())
+      scores.uncertainty(Eigen::all, part.uncertainty_indices) =
+          slope * part_columns.transpose() * part.by_uncertainty[flight];
     for (Eigen::Index i = 0; i < part_columns.rows(); ++i) {
       Eigen::MatrixXd& block = scores.blocks[numbers_(flight, time[static_cast<std::size_t>(i)])];
       block.leftCols(size_) += slope * part_columns.row(i).transpose() * columns.row(i);
@@ -395,12 +397,12 @@ class ScoreSums {
   const Eigen::Index fitted_;
   const Eigen::Index size_;  // fitted parameters, and fixed ones with an error
   const Blocks numbers_;
-  const std::vector<std::string> doubts_;
+  const std::vector<std::string> uncertainties_;
   // For each block of bins: derivatives of the scores by all parameters, and the scores.
   std::vector<Eigen::MatrixXd> blocks_;
   Eigen::MatrixXd covariance_;  // scores by the noise and by the zeros of the flights
   Eigen::MatrixXd by_misfit_;
-  Eigen::MatrixXd by_doubt_;
+  Eigen::MatrixXd by_uncertainty_;
   std::vector<Eigen::VectorXd> zeros_;            // one for each flight
   std::vector<std::vector<StageScores>> stages_;  // one for each local flight, first reference
   std::vector<StaticReference> static_references_{};

@@ -28,8 +28,8 @@ struct FitCovariance {
   Eigen::MatrixXd by_flights{};
   /// Names of the reference uncertainties, and the change of the equations' parameters by one standard
   /// uncertainty of each.
-  std::vector<std::string> doubts{};
-  Eigen::MatrixXd by_doubt{};
+  std::vector<std::string> uncertainties{};
+  Eigen::MatrixXd by_uncertainty{};
   /// Jackknife standard errors of the equations' parameters, omitting one flight or one part of a flight at a
   /// time; independent of the noise model. Infinite if one of these alone determines the parameter, NaN with
   /// fewer than three of them or at a bound.

@@ -48,7 +48,7 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     : task_(task),
       setup_(std::move(setup)),
       columns_(setup_.parameters()),
-      doubt_(task.model, task.reference, task.options.trust_reference, !task.shares_system),
+      uncertainty_(task.model, task.reference, task.options.trust_reference, !task.shares_system),
       prepared_(setup_.values),
       evaluated_(setup_.values),
       binned_{std::vector<Binning>(count()), std::vector<Eigen::MatrixXd>(count()),

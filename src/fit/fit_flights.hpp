@@ -11,7 +11,7 @@
 
 #include <pcor/residuals/residuals.hpp>
 #include "campaign/linear_rows.hpp"
-#include "campaign/reference_doubt.hpp"
+#include "campaign/reference_uncertainty.hpp"
 #include "campaign/whitened.hpp"
 #include "fit/fit_task.hpp"
 #include "fit/loss_function.hpp"
@@ -75,7 +75,8 @@ class FitFlight {
 
  private:
   const FitTask* task_;
-  std::shared_ptr<FlightSamples> recomputed_samples_;  // of `rows_`, if columns depend on coefficients
+  std::shared_ptr<FlightSamples>
+      recomputed_samples_;  // samples of `rows_`, if columns depend on coefficients
   LinearRows rows_;
 };
 
@@ -127,7 +128,7 @@ class FitFlights {
 
   const FitTask& task() const { return task_; }
   const FitSetup& setup() const { return setup_; }
-  const ReferenceDoubt& doubt() const { return doubt_; }
+  const ReferenceUncertainty& uncertainty() const { return uncertainty_; }
 
   /// Flights with each further reference.
   const std::vector<std::unique_ptr<FitFlights>>& further() const { return further_; }
@@ -249,7 +250,7 @@ class FitFlights {
   const FitTask& task_;
   const FitSetup setup_;
   const std::vector<std::size_t> columns_;  // parameters with a column
-  const ReferenceDoubt doubt_;
+  const ReferenceUncertainty uncertainty_;
   std::vector<bool> linear_;
   bool rows_are_linear_ = true;
   std::size_t samples_ = 0;

@@ -10,7 +10,7 @@
 #include <pcor/base/utc.hpp>
 #include "model_io/covariance_blocks.hpp"
 #include "model_io/model_names.hpp"
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 #include "roles/model_inputs.hpp"
 
 namespace pcor::internal {
@@ -106,7 +106,7 @@ ModelDefinition fitted_model(const ModelDefinition& given, std::size_t first, co
       const bool is_parameter =
           std::any_of(fit.parameters.begin(), fit.parameters.end(),
                       [&](const FittedParameter& parameter) { return parameter.name == known[k]; });
-      if (!has_doubt(known[k]) || is_parameter) continue;
+      if (!has_default_uncertainty(known[k]) || is_parameter) continue;
       covariance.parameters.push_back(known[k]);
       inside.push_back(k);
     }

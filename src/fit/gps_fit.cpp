@@ -14,7 +14,7 @@
 #include "campaign/gps_system.hpp"
 #include "campaign/model_parameters.hpp"
 #include "fit/fit_task.hpp"
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/variance_factor.hpp"
 
@@ -61,14 +61,14 @@ class GpsSolver {
         before_(solution.values(requested_)),
         carried_(Eigen::MatrixXd::Zero(count_, as_index(fixed_coefficients_.size()))),
         columns_(requested_),
-        doubt_of_fixed_(task_.doubt(fixed_coefficients_, fixed_coefficients_)) {
+        fixed_covariance_(task_.uncertainty(fixed_coefficients_, fixed_coefficients_)) {
     if (!is_alone_ && carried_.cols() > 0)
       carried_ =
-          covariance.matrix.topRightCorner(count_, carried_.cols()) * information_inverse(doubt_of_fixed_);
+          covariance.matrix.topRightCorner(count_, carried_.cols()) * information_inverse(fixed_covariance_);
     for (std::size_t k = 0; k < fixed_coefficients_.size(); ++k) {
       if (fixed_coefficients_[k] < parameter_count(task_.model.model)) continue;
-      doubt_of_fixed_.row(as_index(k)).setZero();
-      doubt_of_fixed_.col(as_index(k)).setZero();
+      fixed_covariance_.row(as_index(k)).setZero();
+      fixed_covariance_.col(as_index(k)).setZero();
     }
     for (const FitFlights* const each : flights)
       states_.emplace_back(each->count(), FlightState{GpsNoise(*gps_kind(each->task().reference))});
@@ -116,7 +116,7 @@ class GpsSolver {
 
   /// Covariance from errors of fixed coefficients. @param derivatives by the fixed coefficients
   Eigen::MatrixXd covariance_by_fixed(const Eigen::MatrixXd& derivatives) const {
-    return derivatives * doubt_of_fixed_ * derivatives.transpose();
+    return derivatives * fixed_covariance_ * derivatives.transpose();
   }
 
   /// Columns of the rows in the order requested, nuisances, residual, fixed.
@@ -203,7 +203,7 @@ class GpsSolver {
       for (const auto& [block, of_references] : blocks) {
         for (const auto& [reference, products] : of_references) sum += products;
       }
-      // Rows minus the part explained by the flight's nuisances: columns less the nuisances' times these.
+      // Each row minus its regression on the nuisances of the flight.
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
       without.topLeftCorner(size, size).setIdentity();
       without(all(), size) = 1.0;
@@ -389,15 +389,15 @@ class GpsSolver {
     const Eigen::MatrixXd by_fixed = level * (kept * carried_ - (posterior_ * by_fixed_).topRows(count_));
     by_noise += covariance_by_fixed(by_fixed);
     stated += covariance_by_fixed(by_fixed);
-    if (held_.cols() > 0) stated += doubt_of_held();
+    if (held_.cols() > 0) stated += held_covariance();
     stated = 0.5 * (stated + stated.transpose()).eval();
     covariance_.by_noise = is_alone_ ? by_noise : stated;
-    if (covariance_.by_doubt.size() > 0) covariance_.by_doubt = kept * covariance_.by_doubt;
-    const Eigen::MatrixXd doubt = task_.doubt(fixed_coefficients_, fixed_coefficients_);
-    const Eigen::MatrixXd across = by_fixed * doubt;
+    if (covariance_.by_uncertainty.size() > 0) covariance_.by_uncertainty = kept * covariance_.by_uncertainty;
+    const Eigen::MatrixXd uncertainty = task_.uncertainty(fixed_coefficients_, fixed_coefficients_);
+    const Eigen::MatrixXd across = by_fixed * uncertainty;
     covariance_.by_flights = stated - across * by_fixed.transpose();
-    covariance_.matrix.resize(count_ + doubt.cols(), count_ + doubt.cols());
-    covariance_.matrix << stated, across, across.transpose(), doubt;
+    covariance_.matrix.resize(count_ + uncertainty.cols(), count_ + uncertainty.cols());
+    covariance_.matrix << stated, across, across.transpose(), uncertainty;
     GpsFit fit;
     fit.stated = error_of(stated);
     const Eigen::MatrixXd matrix = matrix_.topLeftCorner(count_, count_);
@@ -410,8 +410,8 @@ class GpsSolver {
   }
 
   /// Covariance of the fixed directions: the prior, or the value stated in the file.
-  Eigen::MatrixXd doubt_of_held() const {
-    const Eigen::MatrixXd stated = task_.doubt(requested_, requested_);
+  Eigen::MatrixXd held_covariance() const {
+    const Eigen::MatrixXd stated = task_.uncertainty(requested_, requested_);
     if (!(stated.diagonal().minCoeff() > 0.0)) return held_ * held_.transpose();
     const Eigen::MatrixXd scaled =
         prior_deviation_.cwiseInverse().asDiagonal() * held_;  // orthonormal columns
@@ -459,7 +459,7 @@ class GpsSolver {
       fit.warnings.push_back(
           fmt::format("error of delta-p {:.2f} hPa: add {}; the flights do not determine {}, kept near the "
                       "input model",
-                      error_of(doubt_of_held()), manoeuvres, names_of(held_)));
+                      error_of(held_covariance()), manoeuvres, names_of(held_)));
     }
     if (weak_.cols() > 0) {
       fit.notes.push_back(fmt::format("add {}; the flights hardly determine {}, kept near the input model",
@@ -486,7 +486,7 @@ class GpsSolver {
   const Eigen::VectorXd before_;      // requested coefficients before the fit
   Eigen::MatrixXd carried_;           // derivatives of these by the fixed ones; zero without other references
   std::vector<std::size_t> columns_;  // parameters with a column: requested; in the last pass also fixed
-  Eigen::MatrixXd doubt_of_fixed_;    // stated covariance of the fixed coefficients on which GPS depends
+  Eigen::MatrixXd fixed_covariance_;  // stated covariance of the fixed coefficients on which GPS depends
   Eigen::VectorXd prior_deviation_{};
   Eigen::VectorXd nuisance_deviation_ = gps_nuisance_deviations();
   double warmer_ = 0.0;                             // nuisance of the thermometer, K

@@ -34,8 +34,8 @@ struct GpsFit {
 /// @param flights for each reference of GPS the flights of the fit
 /// @param solution in: the start, or the result of the other references; out: values and bounds
 /// @param covariance in: covariance by the other references; empty if there are no other references. Out: all
-/// but `doubts`; the jackknife omits parts of five minutes; `by_noise` excludes held directions by GPS alone,
-/// and is the stated covariance after other references
+/// but `uncertainties`; the jackknife omits parts of five minutes; `by_noise` excludes held directions by GPS
+/// alone, and is the stated covariance after other references
 GpsFit fit_gps(const std::vector<FitFlights*>& flights, Solution& solution, FitCovariance& covariance);
 
 }  // namespace pcor::internal

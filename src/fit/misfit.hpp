@@ -37,7 +37,7 @@ struct Misfit {
   Eigen::VectorXd variance{};    ///< height of each bump, hPa^2; empty if unknown
   Eigen::VectorXd height{};      ///< most likely height of each bump, hPa
   double between_flights = 0.0;  ///< variance of the zero of each flight, hPa^2
-  double rms = 0.0;              ///< of the misfit not absorbed by the law, with its uncertainty, hPa
+  double rms = 0.0;  ///< rms of the misfit that the law does not absorb, with its uncertainty, hPa
 
   /// Most likely misfit in bins with these states, hPa; zero if unknown.
   Eigen::VectorXd at(const Eigen::MatrixXd& flown) const;

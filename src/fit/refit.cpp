@@ -42,18 +42,19 @@ namespace {
 /// law of the second system.
 void require_other_pressures(const FlightSet& flights, const ModelDefinition& model,
                              const References& references) {
-  const std::string pressure = model.variable_of(Quantity::static_pressure);
+  const std::string static_variable = model.variable_of(Quantity::static_pressure);
   for (const std::shared_ptr<const Reference>& reference : references) {
     const std::string other = circular_pressure(flights, model, *reference);
     // A pressure that the archive computed from the model's is a law, which a fit may copy.
-    if (other.empty() || (reference->model() == nullptr && other != pressure)) continue;
+    if (other.empty() || (reference->model() == nullptr && other != static_variable)) continue;
     throw Error(
         Error::Code::usage,
-        fmt::format("reference {}: its static pressure {} {} that of the model '{}', so a fit would be "
-                    "circular; give a system with an independent static pressure",
-                    reference->name(), other,
-                    other == pressure ? std::string("is") : "is computed from " + pressure + ",",
-                    model.model.name));
+        fmt::format(
+            "reference {}: its static pressure {} {} that of the model '{}', so a fit would be "
+            "circular; give a system with an independent static pressure",
+            reference->name(), other,
+            other == static_variable ? std::string("is") : "is computed from " + static_variable + ",",
+            model.model.name));
   }
 }
 
@@ -138,7 +139,7 @@ Fitted at_start(const FitTask& task) {
     fitted.parameters.insert(fitted.parameters.end(), stage.begin(), stage.end());
   }
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
-    if (fitted.stage_of[p] == 0 && task.doubt(as_index(p), as_index(p)) > 0.0)
+    if (fitted.stage_of[p] == 0 && task.uncertainty(as_index(p), as_index(p)) > 0.0)
       fitted.fixed_with_error.push_back(p);
   }
   fitted.solution.values = task.start;
@@ -280,19 +281,19 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
 /// Adds the thermometer calibration to the covariance if the fit included its uncertainty: it also affects
 /// temperature and airspeed of the corrected samples and partly cancels there.
 void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovariance& covariance) {
-  const ReferenceDoubt& doubt = fitted.flights->doubt();
-  for (std::size_t d = 0; d < doubt.names().size(); ++d) {
-    const std::string& name = doubt.names()[d];
+  const ReferenceUncertainty& uncertainty = fitted.flights->uncertainty();
+  for (std::size_t d = 0; d < uncertainty.names().size(); ++d) {
+    const std::string& name = uncertainty.names()[d];
     const std::string effect = name.substr(0, name.find('.'));
     if (std::find(thermometer_calibration.begin(), thermometer_calibration.end(), effect) ==
         thermometer_calibration.end())
       continue;
-    const auto column = std::find(covariance.doubts.begin(), covariance.doubts.end(), name);
-    if (column == covariance.doubts.end()) continue;
-    const double size = doubt.sizes()[as_index(d)];
+    const auto column = std::find(covariance.uncertainties.begin(), covariance.uncertainties.end(), name);
+    if (column == covariance.uncertainties.end()) continue;
+    const double size = uncertainty.sizes()[as_index(d)];
     std::vector<double> row(result.covariance_names.size(), 0.0);
     for (std::size_t a = 0; a < fitted.parameters.size(); ++a)
-      row[a] = size * covariance.by_doubt(as_index(a), column - covariance.doubts.begin());
+      row[a] = size * covariance.by_uncertainty(as_index(a), column - covariance.uncertainties.begin());
     for (std::size_t a = 0; a < row.size(); ++a) result.covariance[a].push_back(row[a]);
     row.push_back(size * size);
     result.covariance.push_back(std::move(row));

@@ -164,7 +164,7 @@ class Solver {
     if (!is_stage_) {
       choose_times();
       linear_step({});
-      measure();
+      prepare_rows();
       refine();
       // The noise is that of residuals at the solution.
       constexpr int maximum = 5;
@@ -175,14 +175,14 @@ class Solver {
         if (has_converged(before)) break;
       }
     }
-    measure();
+    prepare_rows();
     constexpr int rounds = 10;
     // The weight of each reference is that of its residuals at the solution.
     for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
       const Eigen::VectorXd before = unknowns();
       refine();
       if (has_converged(before)) break;
-      measure();
+      prepare_rows();
     }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns();
@@ -238,7 +238,7 @@ class Solver {
     }
   }
 
-  void measure() {
+  void prepare_rows() {
     if (is_stage_) return flights_.prepare(solution_.values);
     flights_.weigh(solution_.values);
     find_deviation();

@@ -79,7 +79,7 @@ std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRu
 }
 
 std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool has_converged,
-                                     bool with_doubt) {
+                                     bool with_uncertainty) {
   // Jackknife errors of n parts have a relative error of 1/sqrt(2 (n - 1)); limits are four of these on
   // either side.
   const double chance = 4.0 / std::sqrt(2.0 * (static_cast<double>(result.jackknife_parts) - 1.0));
@@ -93,7 +93,7 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   }
   // Uncertainty of a prior or of fixed parameters is not noise, so a jackknife cannot see it.
   const auto has_prior = [&](const FittedParameter& parameter) {
-    return with_doubt ||
+    return with_uncertainty ||
            std::any_of(result.surfaces.begin(), result.surfaces.end(), [&](const SurfaceFit& each) {
              return parameter.name.rfind(each.effect + ".", 0) == 0;
            });

@@ -20,8 +20,8 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before);
 std::vector<std::string> fit_warnings(const RefitResult& result, const OutlierRun& longest);
 
 /// Warnings if the jackknife contradicts the stated errors, or if stages do not converge.
-/// @param with_doubt errors include the uncertainty of a prior or of fixed coefficients
+/// @param with_uncertainty errors include the uncertainty of a prior or of fixed coefficients
 std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool has_converged,
-                                     bool with_doubt);
+                                     bool with_uncertainty);
 
 }  // namespace pcor::internal

@@ -2,45 +2,46 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <deque>
-#include <utility>
+#include <list>
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
 
 namespace pcor::internal {
 
-/// The most recently read blocks of a file's slow variables, up to 4 MB: commands read each of these
-/// variables several times, and the netCDF library needs longer for a request than for its values.
+/// Recently read blocks of a file, of at most 4096 numbers each and 4 MB together. Commands read most
+/// variables several times, and a request to the netCDF library takes longer than its values.
 class BlockCache {
  public:
-  /// Copies the numbers of a block to `out`, read by `read(out)` unless they are kept. @param count of
-  /// numbers
+  static constexpr std::size_t capacity = std::size_t{1} << 19;  ///< numbers, 4 MB
+
+  /// Copies the numbers of a block to `out`; `read(out)` reads a block that is not in the cache.
+  /// @param count of numbers in the block
   template <class Read>
   void read(int variable, RecordBlock block, std::size_t count, double* out, const Read& read) {
-    const auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& each) {
+    const auto known = std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& each) {
       return each.variable == variable && each.first == block.first && each.numbers.size() == count;
     });
-    if (known != kept_.end()) {
+    if (known != blocks_.end()) {
+      blocks_.splice(blocks_.end(), blocks_, known);
       std::copy(known->numbers.begin(), known->numbers.end(), out);
       return;
     }
     read(out);
     if (count > records_per_block) return;
-    if (kept_.size() == max_blocks) kept_.pop_front();
-    kept_.push_back({variable, block.first, {out, out + count}});
+    for (size_ += count; size_ > capacity; blocks_.pop_front()) size_ -= blocks_.front().numbers.size();
+    blocks_.push_back({variable, block.first, {out, out + count}});
   }
 
  private:
-  static constexpr std::size_t max_blocks = (std::size_t{4} << 20) / (records_per_block * sizeof(double));
-
-  struct Kept {
+  struct Block {
     int variable;
     std::size_t first;
     std::vector<double> numbers;
   };
 
-  std::deque<Kept> kept_{};
+  std::list<Block> blocks_{};  // least recently used first
+  std::size_t size_ = 0;       // numbers in all blocks
 };
 
 }  // namespace pcor::internal

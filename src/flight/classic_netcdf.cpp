@@ -20,7 +20,7 @@ std::uint64_t padded(std::uint64_t bytes) { return bytes > maximum - 3 ? maximum
 class Header {
  public:
   explicit Header(const std::filesystem::path& path)
-      : stream_(path, std::ios::binary), left_(std::filesystem::file_size(path)) {
+      : stream_(path, std::ios::binary), remaining_bytes_(std::filesystem::file_size(path)) {
     require(number(1) == 'C' && number(1) == 'D' && number(1) == 'F');
     version_ = number(1);
     require(version_ == 1 || version_ == 2 || version_ == 5);
@@ -35,7 +35,7 @@ class Header {
   std::uint64_t list_of(std::uint64_t tag, std::uint64_t min_bytes) {
     const std::uint64_t found = number(4), length = count();
     require(found == tag || (found == 0 && length == 0));
-    require(length <= left_ / min_bytes);
+    require(length <= remaining_bytes_ / min_bytes);
     return sound_ ? length : 0;
   }
 
@@ -57,7 +57,7 @@ class Header {
 
   void skip_attributes() {
     constexpr std::uint64_t tag = 12, min_bytes = 12;
-    for (std::uint64_t left = list_of(tag, min_bytes); left > 0 && sound_; --left) {
+    for (std::uint64_t remaining = list_of(tag, min_bytes); remaining > 0 && sound_; --remaining) {
       skip_name();
       const std::uint64_t bytes = element_bytes();
       skip(padded(times(bytes, count())));
@@ -69,25 +69,25 @@ class Header {
  private:
   std::uint64_t number(std::uint64_t bytes) {
     std::uint64_t value = 0;
-    require(bytes <= left_);
+    require(bytes <= remaining_bytes_);
     for (std::uint64_t i = 0; i < bytes && sound_; ++i) {
       const int byte = stream_.get();
       require(stream_.good());
       value = value << 8 | static_cast<std::uint64_t>(byte);
     }
-    if (sound_) left_ -= bytes;
+    if (sound_) remaining_bytes_ -= bytes;
     return sound_ ? value : 0;
   }
 
   void skip(std::uint64_t bytes) {
-    require(bytes <= left_);
+    require(bytes <= remaining_bytes_);
     if (!sound_) return;
     stream_.ignore(static_cast<std::streamsize>(bytes));
-    left_ -= bytes;
+    remaining_bytes_ -= bytes;
   }
 
   std::ifstream stream_;
-  std::uint64_t left_;
+  std::uint64_t remaining_bytes_;
   std::uint64_t version_ = 0;
   bool sound_ = true;
 };
@@ -106,8 +106,8 @@ std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path
 
   constexpr std::uint64_t dimension_tag = 10, min_dimension_bytes = 8;
   std::vector<std::uint64_t> lengths;  // lengths of the dimensions; 0 is the unlimited dimension
-  for (std::uint64_t left = header.list_of(dimension_tag, min_dimension_bytes); left > 0 && header.sound();
-       --left) {
+  for (std::uint64_t remaining = header.list_of(dimension_tag, min_dimension_bytes);
+       remaining > 0 && header.sound(); --remaining) {
     header.skip_name();
     lengths.push_back(header.count());
   }
@@ -115,8 +115,8 @@ std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path
 
   constexpr std::uint64_t variable_tag = 11, min_variable_bytes = 28;
   std::vector<Extent> variables;
-  for (std::uint64_t left = header.list_of(variable_tag, min_variable_bytes); left > 0 && header.sound();
-       --left) {
+  for (std::uint64_t remaining = header.list_of(variable_tag, min_variable_bytes);
+       remaining > 0 && header.sound(); --remaining) {
     Extent variable;
     header.skip_name();
     std::uint64_t elements = 1;

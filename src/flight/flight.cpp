@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <initializer_list>
 #include <iterator>
 #include <limits>
@@ -56,7 +55,7 @@ struct Variable {
   std::array<double, 2> valid_range;   // numbers of the stored type
   UnitConversion unpacking;            // scale_factor and add_offset
   std::vector<StatusFlags> flags;      // flags of unusable samples
-  std::optional<Error> refusal;        // error for a variable whose numbers are ambiguous
+  std::optional<Error> error;          // error for a variable whose numbers are ambiguous
 };
 
 std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
@@ -70,7 +69,7 @@ std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   return static_cast<int>(length);
 }
 
-Variable describe(const FlightFile& file, int id, int time_dimension) {
+Variable read_variable(const FlightFile& file, int id, int time_dimension) {
   Variable variable;
   variable.id = id;
   VariableInfo& info = variable.info;
@@ -102,7 +101,7 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
     for (const StatusFlags& flags : variable.flags)
       info.flags.push_back(file.variable_name(flags.variable()));
   } catch (const Error& error) {
-    variable.refusal = error;
+    variable.error = error;
   }
   return variable;
 }
@@ -173,7 +172,7 @@ struct Flight::Implementation {
   Variable& variable(std::size_t number) {
     if (!variables[number]) {
       const CurrentInput current(file->path());
-      variables[number] = describe(*file, static_cast<int>(number), source.dimension);
+      variables[number] = read_variable(*file, static_cast<int>(number), source.dimension);
     }
     return *variables[number];
   }
@@ -246,7 +245,7 @@ struct Flight::Implementation {
   }
 
   RejectedCounts read(Variable& variable, RecordBlock block, double* values) {
-    if (variable.refusal) throw *variable.refusal;
+    if (variable.error) throw *variable.error;
     require_records(variable.info.name, block);
     if (block.count == 0) return {};
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
@@ -418,8 +417,8 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& re
     for (const std::string& each : variables()) all.push_back(variable(each));
     refuse_missing(file(), all, name, requested, role);
   }
-  const std::string& recorded = variable(name).units;
-  if (stated.empty()) return UnitConversion::between(recorded, requested, {name, path().string(), role});
+  const std::string& recorded_unit = variable(name).units;
+  if (stated.empty()) return UnitConversion::between(recorded_unit, requested, {name, path().string(), role});
   if (!is_convertible(stated, requested))
     file().refuse(
         Error::Code::unit,
@@ -458,16 +457,16 @@ RejectedCounts Flight::read(const std::string& name, RecordBlock block, const Un
 RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
                                     const UnitConversion& conversion, double* out) const {
   Variable& variable = implementation_->find_series(name);
-  const int recorded = variable.info.rate;
-  if (rate == recorded) return read(name, block, conversion, out);
+  const int recorded_rate = variable.info.rate;
+  if (rate == recorded_rate) return read(name, block, conversion, out);
   if (rate < 1) file().refuse(Error::Code::usage, ": {} samples a record are impossible", rate);
-  if (rate % recorded != 0 && recorded % rate != 0)
+  if (rate % recorded_rate != 0 && recorded_rate % rate != 0)
     file().refuse(Error::Code::samples,
                   ": {} has {} samples a record, which cannot be converted to {}; choose a variable with {} "
                   "samples a record",
-                  name, recorded, rate, implementation_->rates_that_fit(rate));
+                  name, recorded_rate, rate, implementation_->rates_that_fit(rate));
   std::vector<double>& values = implementation_->scratch;
-  values.resize(block.count * static_cast<std::size_t>(recorded));
+  values.resize(block.count * static_cast<std::size_t>(recorded_rate));
   RejectedCounts excluded = implementation_->read(variable, block, values.data());
   for (double& value : values) {
     if (std::isnan(value) || !std::isnan(conversion(value))) continue;
@@ -475,8 +474,8 @@ RejectedCounts Flight::read_at_rate(int rate, const std::string& name, RecordBlo
     ++excluded.impossible;
   }
   const auto requested = block.count * static_cast<std::size_t>(rate);
-  if (rate > recorded) {
-    const auto held = static_cast<std::size_t>(rate / recorded);
+  if (rate > recorded_rate) {
+    const auto held = static_cast<std::size_t>(rate / recorded_rate);
     for (std::size_t i = 0; i < requested; ++i) out[i] = conversion(values[i / held]);
     return excluded;
   }

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <strings.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 
 #include <pcor/base/shell_quote.hpp>
 #include <pcor/base/suggest.hpp>

@@ -75,10 +75,10 @@ std::vector<StatusFlags> StatusFlags::of(const FlightFile& file, int variable) {
     const bool is_known = std::any_of(
         all.begin(), all.end(), [&number](const StatusFlags& each) { return each.variable_ == number; });
     if (!number || is_known || !file.is_numeric(*number)) continue;
-    const std::vector<int> of_flags = file.dimensions_of(*number);
-    const bool is_of_record =
-        of_flags.size() == 1 && dimensions.size() == 2 && of_flags.front() == dimensions.front();
-    if (of_flags != dimensions && !is_of_record) continue;
+    const std::vector<int> flag_dimensions = file.dimensions_of(*number);
+    const bool is_of_record = flag_dimensions.size() == 1 && dimensions.size() == 2 &&
+                              flag_dimensions.front() == dimensions.front();
+    if (flag_dimensions != dimensions && !is_of_record) continue;
     const StatusFlags flags(file, *number, is_of_record);
     if (!flags.conditions_.empty()) all.push_back(flags);
   }

@@ -106,8 +106,8 @@ Improvement improve(const FlightSet& flights, const ModelDefinition& model, cons
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("diagnosing", trial.file);
-    Diagnosis diagnosis =
-        diagnose(flights, trial.file, with_shared_effects(ordered, trial, variables), diagnose_with);
+    Diagnosis diagnosis = diagnose(flights, trial.file,
+                                   references_with_shared_effects(ordered, trial, variables), diagnose_with);
     if (!diagnose_with.series_of)  // pictures of all steps show the same flights
       diagnose_with.series_of = diagnosis.flights_with_records();
     return diagnosis;

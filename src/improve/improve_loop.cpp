@@ -94,7 +94,7 @@ class ForwardSelection {
     result_.holdout_is_flights = loop.has_holdout;
     ImproveStep first;
     RefitResult fit = loop.refit(given_);
-    measure(first, fit, {});
+    set_errors(first, fit, {});
     if (std::isnan(first.rms_holdout)) {
       throw Error(
           Error::Code::samples,
@@ -103,8 +103,8 @@ class ForwardSelection {
     }
     const std::string before =
         std::isnan(fit.rms_before) ? "" : fmt::format("{} before, ", shown(fit.rms_before));
-    first.learnt = fmt::format("the coefficients fitted again: rms {}{} after", before, shown(fit.rms));
-    take(std::move(first), std::move(fit), {}, {});
+    first.summary = fmt::format("the coefficients fitted again: rms {}{} after", before, shown(fit.rms));
+    accept_step(std::move(first), std::move(fit), {}, {});
   }
 
   Improvement run() {
@@ -113,7 +113,7 @@ class ForwardSelection {
     add_surface();
     compare_with_the_given();
     result_.model = std::move(delivered_.file);
-    for (const auto& [id, refusal] : refused_) notes_.push_back(refusal);
+    for (const auto& [id, reason] : rejected_) notes_.push_back(reason);
     result_.fit.notes.insert(result_.fit.notes.end(), notes_.begin(), notes_.end());
     return std::move(result_);
   }
@@ -259,7 +259,7 @@ class ForwardSelection {
     ImproveStep step;
     step.added = step.delivered = id;
     step.title = std::string(surface.title);
-    measure(step, fit, delivered_.shared_effects);
+    set_errors(step, fit, delivered_.shared_effects);
     // The parts are others than those of the steps before: their ratio is applied to the step before.
     if (!loop_.has_holdout)
       step.rms_holdout =
@@ -268,7 +268,7 @@ class ForwardSelection {
     for (const SurfaceFit& each : fit.surfaces) {
       if (each.effect == id) degrees = each.degrees_of_freedom;
     }
-    step.learnt = fmt::format(
+    step.summary = fmt::format(
         "{}: {:.1f} degrees of freedom; {}, decrease of chi2 {:.0f} +- {:.0f}; the surface describes "
         "the residual and identifies no cause",
         id, degrees, figures, offer->compared.chi2_reduction, offer->compared.chi2_reduction_error);
@@ -279,7 +279,7 @@ class ForwardSelection {
                      {id_on_other_system("", id), 1.0 - probability}};
       step.rival_error = std::sqrt(1.0 - probability) * offer->static_change;
     }
-    take(std::move(step), std::move(fit), {}, delivered_.shared_effects);
+    accept_step(std::move(step), std::move(fit), {}, delivered_.shared_effects);
     // The uncertainty of the choice among rivals stays part of the stated error.
     add_rival_error(result_.fit.model);
     delivered_.file = result_.fit.model;
@@ -353,23 +353,23 @@ class ForwardSelection {
     const std::size_t added = result_.steps.size() - 1;
     if (added >= loop_.max_steps)
       return stop(StopReason::max_steps, fmt::format("{} effects were added, the maximum", added));
-    std::vector<std::string> refusals;
+    std::vector<std::string> reasons;
     for (OfferedEffect& candidate : candidates) {
       const std::string id = candidate.choices.front().effect.id;
-      refused_.erase(id);
-      std::string refusal = refusal_of(std::move(candidate));
-      if (!refusal.empty()) {
-        refusals.push_back(refusal);
-        refused_[id] = std::move(refusal);
+      rejected_.erase(id);
+      std::string reason = rejection_reason_of(std::move(candidate));
+      if (!reason.empty()) {
+        reasons.push_back(reason);
+        rejected_[id] = std::move(reason);
       } else if (!all || result_.steps.size() > loop_.max_steps) {
         break;
       }
     }
     // After an addition, the diagnosis of the extended model has the next candidates.
     if (result_.steps.size() > added + 1) return;
-    refused_.clear();  // `stop_explanation` has them
+    rejected_.clear();  // `stop_explanation` has them
     stop(StopReason::no_gain,
-         fmt::format("no candidate is kept{}; {}", role_advice(), fmt::join(refusals, "; ")));
+         fmt::format("no candidate is kept{}; {}", role_advice(), fmt::join(reasons, "; ")));
   }
 
   /// Advice to name the variable of a role, without which an effect is not tested; empty if no role lacks
@@ -458,7 +458,7 @@ class ForwardSelection {
   }
 
   /// Adds the candidate and keeps it if it helps. @return the reason if it does not; empty if it is kept
-  std::string refusal_of(OfferedEffect candidate) {
+  std::string rejection_reason_of(OfferedEffect candidate) {
     const std::string id = candidate.choices.front().effect.id;
     ImproveStep& step = candidate.step;
     step.added = step.delivered = id;
@@ -489,21 +489,22 @@ class ForwardSelection {
       return fmt::format("rejected: {}, rms of the fit {} with it, {} without it", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
-    measure(step, fit, model.shared_effects);
+    set_errors(step, fit, model.shared_effects);
     // Without held-out flights, the cross-validation parts of the diagnosis are used. If the model describes
     // more samples than before (flaps extended), both models are compared on these samples.
     const bool same_samples = fit.samples == result_.fit.samples;
-    const bool in_turn = !loop_.has_holdout && same_samples;
+    const bool is_cross_validated = !loop_.has_holdout && same_samples;
     const TrialComparison& judged = loop_.has_holdout ? held_out : fitted;
-    const double before = in_turn ? result_.steps.back().rms_holdout : judged.rms_before;
-    const double after = in_turn ? step.rms_holdout : judged.rms_after;
-    const bool better = in_turn ? after <= before && candidate.is_sure : judged.is_better();
-    const bool worse = after > before || (!in_turn && judged.is_worse());
+    const double before = is_cross_validated ? result_.steps.back().rms_holdout : judged.rms_before;
+    const double after = is_cross_validated ? step.rms_holdout : judged.rms_after;
+    const bool better = is_cross_validated ? after <= before && candidate.is_sure : judged.is_better();
+    const bool worse = after > before || (!is_cross_validated && judged.is_worse());
     const std::string figures =
         fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));
-    const std::string gain = in_turn ? ""
-                                     : fmt::format(" (decrease of chi2 {:.0f} +- {:.0f})",
-                                                   judged.chi2_reduction, judged.chi2_reduction_error);
+    const std::string gain = is_cross_validated
+                                 ? ""
+                                 : fmt::format(" (decrease of chi2 {:.0f} +- {:.0f})", judged.chi2_reduction,
+                                               judged.chi2_reduction_error);
     if (worse || !(better || (candidate.is_named && candidate.is_sure && fitted.is_better()))) {
       return fmt::format("rejected: {}, {}{}{}", id, figures, gain, worse ? "" : ", not significant");
     }
@@ -511,18 +512,19 @@ class ForwardSelection {
       return fmt::format("rejected: {}, {}; a term with an unknown cause must reduce the rms by {:.0f} %", id,
                          figures, 100.0 * (1.0 - unnamed_limit));
     }
-    step.learnt = fmt::format(
+    step.summary = fmt::format(
         "{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id), shown(before),
         shown(after),
         better ? "" : ", not significant; kept because the residual of the fitted flights decreases",
         candidate.caution);
-    take(std::move(step), std::move(fit), std::move(candidate.choices), std::move(model.shared_effects));
+    accept_step(std::move(step), std::move(fit), std::move(candidate.choices),
+                std::move(model.shared_effects));
     return "";
   }
 
   /// Figures of a step. The diagnosis replaces missing held-out samples.
-  void measure(ImproveStep& step, const RefitResult& fit,
-               const std::vector<std::string>& shared_effects) const {
+  void set_errors(ImproveStep& step, const RefitResult& fit,
+                  const std::vector<std::string>& shared_effects) const {
     step.rms_train = fit.rms;
     step.noise_rms = fit.noise_rms;
     step.terms = static_cast<std::size_t>(
@@ -537,8 +539,8 @@ class ForwardSelection {
   }
 
   /// Appends a measured step, with a diagnosis of the remaining residual.
-  void take(ImproveStep step, RefitResult fit, std::vector<AddedEffect> choices,
-            std::vector<std::string> shared_effects) {
+  void accept_step(ImproveStep step, RefitResult fit, std::vector<AddedEffect> choices,
+                   std::vector<std::string> shared_effects) {
     if (result_.steps.empty())
       result_.refitted = fit.model;
     else
@@ -558,13 +560,13 @@ class ForwardSelection {
   const ImproveLoop& loop_;
   Improvement result_;
   TrialModel given_;
-  std::vector<std::string> shared_effects_{};  // of the model after the last step
+  std::vector<std::string> shared_effects_{};  // effects of the model after the last step
   TrialModel delivered_{};                     // the model to write, with the rivals that were chosen
   // alternatives for each added effect, the effect itself first
   std::vector<std::vector<AddedEffect>> alternatives_{};
-  std::vector<double> error_of_first_{};          // hPa, of each of them, if the first rival is applied
-  Notes notes_{};                                 // notes of the selection, after the notes of the last fit
-  std::map<std::string, std::string> refused_{};  // why the last trial of an effect was dropped
+  std::vector<double> error_of_first_{};           // hPa, of each of them, if the first rival is applied
+  Notes notes_{};                                  // notes of the selection, after the notes of the last fit
+  std::map<std::string, std::string> rejected_{};  // why the last trial of an effect was dropped
 };
 
 }  // namespace

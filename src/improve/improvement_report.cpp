@@ -142,7 +142,7 @@ ReportTable steps_table(const Improvement& improvement) {
     table.rows.push_back({step_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
                           cell(step.rms_holdout, 3), cell(step.noise_rms, 3),
                           finding == nullptr ? "" : finding->size_text(""), join_list(step.aliases),
-                          sentence(step.learnt)});
+                          sentence(step.summary)});
   }
   return table;
 }

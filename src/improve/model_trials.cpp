@@ -102,8 +102,8 @@ ModelDefinition with_start_of(const ModelDefinition& given, ModelDefinition exte
   return extended;
 }
 
-References with_shared_effects(const References& references, const TrialModel& model,
-                               const std::vector<std::string>& variables) {
+References references_with_shared_effects(const References& references, const TrialModel& model,
+                                          const std::vector<std::string>& variables) {
   if (model.shared_effects.empty()) return references;
   References result;
   for (const std::shared_ptr<const Reference>& reference : references) {

@@ -12,14 +12,14 @@ namespace pcor::internal {
 /// lose pressure causes no difference between them.
 struct TrialModel {
   ModelDefinition file;
-  std::vector<std::string> shared_effects{};  ///< their ids
+  std::vector<std::string> shared_effects{};  ///< ids of these effects
 };
 
 /// References for a diagnosis; those with their own model get the shared effects of the model, with both
 /// coefficients free.
 /// @param variables variables of the flights
-References with_shared_effects(const References& references, const TrialModel& model,
-                               const std::vector<std::string>& variables);
+References references_with_shared_effects(const References& references, const TrialModel& model,
+                                          const std::vector<std::string>& variables);
 
 /// Residuals of several models on one flight with one reference.
 struct TrialFlight {

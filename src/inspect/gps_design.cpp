@@ -87,14 +87,14 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelDefinition&
       constant ? Eigen::VectorXd(defects.col(*constant)) : Eigen::VectorXd::Ones(defects.rows());
   design.level = std::sqrt(mean * covariance.topLeftCorner(count, count) * mean.transpose());
   // A direction is undetermined if the flight hardly reduces its prior error, or if it varies too little.
-  constexpr double learnt = 0.5;
+  constexpr double summary = 0.5;
   const Eigen::MatrixXd prior = variances.head(count).asDiagonal();
   const auto error_of = [&](const std::vector<Eigen::Index>& with) {
     const double error = error_beyond(level, defects, covariance, with);
     const double before = error_beyond(level, defects, prior, with);
     // Columns proportional to the level have only rounding errors beyond it.
     constexpr double rounding = 1e-9;  // hPa
-    return !(before > rounding) ? nan : error > learnt * before ? infinity : error;
+    return !(before > rounding) ? nan : error > summary * before ? infinity : error;
   };
   design.slope = error_of(with_speed);
   design.attack = error_of(with_attack);

@@ -12,7 +12,7 @@
 #include "base/text_file.hpp"
 #include "model_io/model_names.hpp"
 #include "model_io/output_table.hpp"
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 
 namespace pcor {
 
@@ -70,7 +70,7 @@ ModelUncertainty internal::stated_uncertainty(const ModelDefinition& file) {
   for (const std::string& name : file.covariance.parameters) {
     const auto found = std::find_if(parameters.begin(), parameters.end(),
                                     [&name](const NamedParameter& each) { return each.name == name; });
-    if (found == parameters.end() && !has_doubt(name)) {
+    if (found == parameters.end() && !has_default_uncertainty(name)) {
       throw Error(
           Error::Code::definition,
           fmt::format(
@@ -97,7 +97,7 @@ ModelUncertainty uncertainty_of(const ModelDefinition& file) {
   const bool has_thermometer = file.variables.count(Quantity::static_pressure) == 0 ||
                                file.variables.count(Quantity::recovery_temperature) != 0;
   if (!has_thermometer || !(stated.has_systematic() || stated.has_random())) return stated;
-  const ModelDefinition whole = with_doubts(file, doubts_of(file, thermometer_calibration));
+  const ModelDefinition whole = with_uncertain_sensors(file, uncertainties_of(file, thermometer_calibration));
   stated = stated_uncertainty(whole);
   for (std::size_t i = file.model.effects.size(); i < whole.model.effects.size(); ++i)
     stated.calibration.push_back(whole.model.effects[i]);

@@ -16,7 +16,7 @@
 #include "model_io/effect_reader.hpp"
 #include "model_io/model_names.hpp"
 #include "model_io/output_table.hpp"
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 
 namespace pcor {
 
@@ -414,7 +414,7 @@ class Reader final : TomlReader {
         uncertainty.static_defect = not_negative(entry);
       } else if (entry.key == "static_defect_ratio") {
         uncertainty.static_defect_ratio = not_negative(entry);
-      } else if (has_doubt(entry.key)) {
+      } else if (has_default_uncertainty(entry.key)) {
         uncertainty.sensors[std::string(entry.key)] = not_negative(entry);
       } else {
         uncertainty.roles[role_of_sample(entry)] = not_negative(entry);
@@ -437,7 +437,7 @@ class Reader final : TomlReader {
     const Names known = names_of(named_parameters(file_.model), &NamedParameter::name);
     Names& names = file_.covariance.parameters;
     for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"static-qp.a2\"]")) {
-      if (!contains(known, name) && !has_doubt(name)) {
+      if (!contains(known, name) && !has_default_uncertainty(name)) {
         fail(*node, "the model has no parameter {}; {}", quote(name),
              known.empty() ? "remove [covariance]" : suggestion_text(name, known));
       }

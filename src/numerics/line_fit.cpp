@@ -51,16 +51,16 @@ void PairMoments::add(double x, double y) {
 
 void PairMoments::add(const PairMoments& other) {
   if (other.samples == 0) return;
-  const auto known = static_cast<double>(samples);
+  const auto own_count = static_cast<double>(samples);
   const auto count = static_cast<double>(other.samples);
   const double dx = other.mean_x - mean_x;
   const double dy = other.mean_y - mean_y;
-  const double weight = known * count / (known + count);
+  const double weight = own_count * count / (own_count + count);
   xx += other.xx + weight * dx * dx;
   yy += other.yy + weight * dy * dy;
   xy += other.xy + weight * dx * dy;
-  mean_x += dx * (count / (known + count));
-  mean_y += dy * (count / (known + count));
+  mean_x += dx * (count / (own_count + count));
+  mean_y += dy * (count / (own_count + count));
   samples += other.samples;
 }
 

@@ -7,7 +7,7 @@
 #include <pcor/base/error.hpp>
 #include "base/phrasing.hpp"
 #include "base/quoting.hpp"
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -89,14 +89,15 @@ void OutputUncertainty::note_unstated(const ModelDefinition& model, Notes& notes
   if (!unstated.empty())
     notes.emplace_back(fmt::format(
         "set {} in [uncertainty]: the uncertainties exclude errors of these sensors", join_list(unstated)));
-  for (const SensorDoubt& doubt : doubts_of(model, thermometer_calibration)) {
+  for (const SensorUncertainty& uncertainty : uncertainties_of(model, thermometer_calibration)) {
     if (stated_.calibration.empty()) break;
     const std::vector<std::string>& known = model.covariance.parameters;
-    if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
+    if (!uncertainty.is_usual || std::find(known.begin(), known.end(), uncertainty.name()) != known.end())
+      continue;
     notes.emplace_back(
         fmt::format("set \"{}\" in [uncertainty] of the model: the uncertainties assume 0 +- {:g}, the usual "
                     "size",
-                    doubt.name(), doubt.size));
+                    uncertainty.name(), uncertainty.size));
   }
 }
 

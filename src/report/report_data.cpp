@@ -245,7 +245,7 @@ struct ItemJson {
               {"start", panel.start},
               {"isStartFitted", panel.is_start_fitted},
               {"coefficients", panel.coefficients},
-              {"own", panel.model_coefficients},
+              {"own", panel.model_coefficient_count},
               {"effects", panel.effects},
               {"x_choices", panel.x_choices},
               {"autocorrelation_time", panel.autocorrelation_time},

@@ -14,10 +14,10 @@ constexpr double block_length = 300.0;  // s
 
 /// Factor on a variance that is known to some degrees of freedom: 1.645 standard errors are then exceeded by
 /// chance once in 20, as with a known variance (Wallace 1959, Annals of Mathematical Statistics 30, 1121).
-double for_freedom(double freedom) {
+double few_values_factor(double degrees_of_freedom) {
   constexpr double square = 1.645 * 1.645;
-  const double correction = (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
-  return freedom / square * std::expm1(square * correction * correction / freedom);
+  const double correction = (8.0 * degrees_of_freedom + 3.0) / (8.0 * degrees_of_freedom + 1.0);
+  return degrees_of_freedom / square * std::expm1(square * correction * correction / degrees_of_freedom);
 }
 
 /// Power of a series in each of its cosines, from half a period in the series to almost two values per
@@ -52,7 +52,7 @@ double variance_of_sum(const std::vector<double>& values) {
   while (band >= min_band &&
          mean(0, band / 2) > (1.0 + 3.0 / std::sqrt(static_cast<double>(band))) * mean(band / 2, band))
     band /= 2;
-  return static_cast<double>(values.size()) * mean(0, band) * for_freedom(static_cast<double>(band));
+  return static_cast<double>(values.size()) * mean(0, band) * few_values_factor(static_cast<double>(band));
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ Estimate gain_between(const FlightSamples& samples, const std::vector<double>& b
     changes.push_back(change);
   }
   const double sum = std::accumulate(gains.begin(), gains.end(), 0.0);
-  if (gains.size() < 2) return {sum, std::abs(sum) * std::sqrt(for_freedom(1.0))};
+  if (gains.size() < 2) return {sum, std::abs(sum) * std::sqrt(few_values_factor(1.0))};
   // a^2 - b^2 = 2 b (a - b) + (a - b)^2: only the product with the residual b of the better model is noise.
   for (std::size_t k = 0; k < gains.size(); ++k) gains[k] -= std::copysign(changes[k], sum);
   return {sum, std::sqrt(variance_of_sum(gains))};

@@ -45,7 +45,7 @@ class ModelOnSamples {
   S corrected_static_pressure(std::size_t sample, const S* parameters, State<S>& state) const {
     NoQualityFlags flags;
     read(sample, parameters, state);
-    chain().measure(state, parameters, flags);
+    chain().correct_inputs(state, parameters, flags);
     state[Quantity::static_defect] = chain().static_defect(state, parameters, flags);
     return state[Quantity::port_static_pressure] + state[Quantity::static_defect];
   }
@@ -74,7 +74,7 @@ class ModelOnSamples {
     State<S> state;
     NoQualityFlags flags;
     read(sample, parameters, state);
-    chain().measure(state, parameters, flags);
+    chain().correct_inputs(state, parameters, flags);
     return state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure];
   }
 

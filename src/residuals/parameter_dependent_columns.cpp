@@ -23,8 +23,8 @@ std::vector<double> airspeed_along_beam(const ModelDefinition& model, const Mode
   return speed;
 }
 
-std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
-                               const std::vector<double>& time, double step, double seconds) {
+std::vector<double> history_input(Quantity quantity, const ModelSamples& samples,
+                                  const std::vector<double>& time, double step, double seconds) {
   if (quantity == Quantity::wetness) {
     const std::vector<double>* const water = samples.find(Quantity::liquid_water);
     if (water == nullptr) return {};
@@ -60,7 +60,7 @@ void find_parameter_dependent_columns(const Model& model, const double* paramete
       dependent = samples.parameter_dependent.insert(
           dependent, {memory.of, effect.id, memory.parameter, 0.0, std::vector<double>(column->size(), 0.0)});
     const double at = parameters[position];
-    const auto over = [&](double seconds) { return remembered(memory.of, samples, time, step, seconds); };
+    const auto over = [&](double seconds) { return history_input(memory.of, samples, time, step, seconds); };
     std::vector<double> values = over(at);
     if (memory.of == Quantity::airspeed_rate) {
       // A fit needs the same samples at every delay: next to a gap, without an earlier value, the derivative

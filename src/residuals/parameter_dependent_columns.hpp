@@ -20,11 +20,11 @@ std::vector<double> airspeed_along_beam(const ModelDefinition& model, const Mode
 /// the wetness of the thermometer after liquid water (`Wetness`), which restarts after a gap in time. Empty
 /// if the samples lack its inputs. @param time of the records, s @param step sampling interval, s
 /// @param seconds of the mean, or of drying, where values below zero are treated as zero
-std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
-                               const std::vector<double>& time, double step, double seconds);
+std::vector<double> history_input(Quantity quantity, const ModelSamples& samples,
+                                  const std::vector<double>& time, double step, double seconds);
 
 /// Computes the columns of the samples that depend on a coefficient of the model, and their derivatives with
-/// respect to it (`remembered`). @param parameters of the model @param time of the records, s
+/// respect to it (`history_input`). @param parameters of the model @param time of the records, s
 /// @param step sampling interval, s
 void find_parameter_dependent_columns(const Model& model, const double* parameters,
                                       const std::vector<double>& time, double step, ModelSamples& samples);

@@ -28,17 +28,18 @@ Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelDe
       model_(std::make_unique<ModelOnSamples>(model, samples_->model)),
       reference_(reference.on(*samples_, *model_)),
       parameters_(model_->parameters()),
-      terms_(model_->linear_terms()),
-      linear_(terms_.size(), !model_->chain().has_minimum()),
+      linear_terms_(model_->linear_terms()),
+      linear_(linear_terms_.size(), !model_->chain().has_minimum()),
       mask_(std::move(mask)) {
   if (const ModelOnSamples* const other = reference_->model()) {
     parameters_.insert(parameters_.end(), other->parameters().begin(), other->parameters().end());
     const std::vector<bool> more = other->linear_terms();
-    terms_.insert(terms_.end(), more.begin(), more.end());
-    linear_.resize(terms_.size(), !other->chain().has_minimum());
+    linear_terms_.insert(linear_terms_.end(), more.begin(), more.end());
+    linear_.resize(linear_terms_.size(), !other->chain().has_minimum());
   }
-  if (!reference.is_static_pressure()) terms_.assign(terms_.size(), false);
-  std::transform(terms_.begin(), terms_.end(), linear_.begin(), linear_.begin(), std::logical_and<>());
+  if (!reference.is_static_pressure()) linear_terms_.assign(linear_terms_.size(), false);
+  std::transform(linear_terms_.begin(), linear_terms_.end(), linear_.begin(), linear_.begin(),
+                 std::logical_and<>());
 }
 
 Residuals::Residuals(Residuals&&) noexcept = default;
@@ -82,7 +83,7 @@ void Residuals::evaluate(const std::vector<std::size_t>& samples, const double* 
   std::vector<Batch::Derivative> by_reference;
   for (std::size_t k = 0; k < requested.size(); ++k) {
     double* const column = derivatives + k * count;
-    if (!terms_[requested[k]]) {
+    if (!linear_terms_[requested[k]]) {
       curved.push_back({requested[k], column});
     } else if (requested[k] < of_model) {
       by_model.push_back(model_->derivative_by(requested[k], column));

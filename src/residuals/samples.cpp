@@ -232,7 +232,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelDefin
   }
   if (chain.derives(Quantity::wetness)) {
     add(Quantity::wetness,
-        remembered(Quantity::wetness, samples, time, step, chain.time_of(Quantity::wetness)));
+        history_input(Quantity::wetness, samples, time, step, chain.time_of(Quantity::wetness)));
   }
   if (chain.derives(Quantity::airspeed_rate)) {
     // Corrected pressures are used: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.

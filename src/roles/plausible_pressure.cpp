@@ -72,8 +72,8 @@ bool are_feet(const std::vector<double>& pressure, const std::vector<double>& he
   return greatest[2] - least[2] < level ? !unit_fits : greatest[0] / least[0] < greatest[1] / least[1];
 }
 
-/// The unit that explains a pressure of `ratio` times the expected one. Empty if no unit does, or only its
-/// own.
+/// The unit that explains a pressure of `ratio` times the expected one. Empty if no unit does, or only
+/// `current_unit`.
 std::string unit_that_fits(const std::string& current_unit, double ratio) {
   for (const auto& [unit, within] :
        {std::pair("hPa", 0.1), std::pair("Pa", 0.1), std::pair("kPa", 0.1), std::pair("mmHg", 0.05),

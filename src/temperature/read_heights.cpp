@@ -13,7 +13,7 @@
 #include "campaign/model_parameters.hpp"
 #include "model_io/archived_model.hpp"
 #include "model_io/calibration.hpp"
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/model_on_samples.hpp"

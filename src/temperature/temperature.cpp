@@ -97,7 +97,7 @@ class TemperatureCalibration {
   }
 
   /// Priors of the other errors: of the humidity its typical error. The error of each term of the model is
-  /// that stated, or the usual one of models; a term missing from a model without stated errors has the
+  /// that stated, or the typical one of models; a term missing from a model without stated errors has the
   /// typical size of its effect.
   void find_prior() {
     double variances = 0.0;
@@ -112,10 +112,10 @@ class TemperatureCalibration {
     const double rms = is_stated ? std::sqrt(variances / count) : model_.law.rms_hpa.value_or(law_default);
     law_error_ = std::hypot(rms, usual_zero);
     const auto size = [&](HeightError error, const EffectInfo& effect) {
-      const double usual = effect.parameters[0].typical;
+      const double typical = effect.parameters[0].typical;
       const bool is_in_law = has_effect(model_, effect.id);
-      if (!(squares[error] > 0.0) || !(is_stated || model_.law.rms_hpa || is_in_law)) return usual;
-      return std::min(usual, law_error_ / std::sqrt(squares[error] / count));
+      if (!(squares[error] > 0.0) || !(is_stated || model_.law.rms_hpa || is_in_law)) return typical;
+      return std::min(typical, law_error_ / std::sqrt(squares[error] / count));
     };
     prior_.sizes[with_dynamic] = size(with_dynamic, effects::StaticQp::info());
     prior_.sizes[with_attack] = size(with_attack, attack_effect());
@@ -306,15 +306,16 @@ class TemperatureCalibration {
     double weights = 0.0;
     double sum = 0.0;
     for (const HeightRecord& record : records_) {
-      HeightRecord remaining = without_unknowns(record, unknowns_);
+      HeightRecord without_errors = without_unknowns(record, unknowns_);
       const bool one_direction = record.way == WayKnown::length;
-      for (HeightBlock& block : remaining.blocks) {
+      for (HeightBlock& block : without_errors.blocks) {
         block.columns[1] = one_direction ? block.north : block.east;
         block.columns[2] = block.north;
       }
       const std::size_t terms = prior_.slope == 0.0 ? 1 : one_direction ? 2 : 3;
-      const TemperatureFit fit = fit_height_by_least_squares({remaining}, terms);
-      const double error = fit.standard_errors[0] * std::sqrt(samples_as_one(remaining, fit.coefficients));
+      const TemperatureFit fit = fit_height_by_least_squares({without_errors}, terms);
+      const double error =
+          fit.standard_errors[0] * std::sqrt(samples_as_one(without_errors, fit.coefficients));
       if (!std::isfinite(error) || !(error > 0.0) || !std::isfinite(fit.coefficients[0])) continue;
       weights += 1.0 / (error * error);
       sum += fit.coefficients[0] / (error * error);

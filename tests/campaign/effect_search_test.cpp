@@ -275,14 +275,14 @@ TEST(EffectSearch, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
   EXPECT_FALSE(problem.search().score(1, {}).possible);
 }
 
-// An effect of a usual size is more likely than a nearly equal one at a hundred times its usual size.
+// An effect of a typical size is more likely than a nearly equal one at a hundred times its typical size.
 TEST(EffectSearch, EffectOfTypicalSizeIsPreferred) {
   Problem problem(600, 6, 21);
   problem.candidate(2) = 0.99 * problem.candidate(1) + 0.14 * problem.candidate(2);
   problem.residual += 0.3 * problem.candidate(1);
   problem.group_by(1);
-  problem.groups[1].usual = {0.3};
-  problem.groups[2].usual = {0.003};
+  problem.groups[1].typical = {0.3};
+  problem.groups[2].typical = {0.003};
   const EffectSearch search = problem.search();
   EXPECT_GT(search.evidence({1}), search.evidence({2}) + 4.0);
   EXPECT_THAT(search.run({}).chosen, ElementsAre(1U));
@@ -290,13 +290,13 @@ TEST(EffectSearch, EffectOfTypicalSizeIsPreferred) {
   Problem alone(600, 6, 22);
   alone.residual += 0.3 * alone.candidate(2);
   alone.group_by(1);
-  alone.groups[2].usual = {0.01};
+  alone.groups[2].typical = {0.01};
   EXPECT_THAT(alone.search().run({}).chosen, ElementsAre(2U));
   // By GPS alone the atmosphere is a more likely cause of such a size.
-  alone.groups[2].max_times_usual = 10.0;
+  alone.groups[2].max_relative_size = 10.0;
   EXPECT_FALSE(alone.search().score(2, {}).possible);
   EXPECT_THAT(alone.search().run({}).chosen, IsEmpty());
-  alone.groups[2].usual = {0.03};
+  alone.groups[2].typical = {0.03};
   EXPECT_THAT(alone.search().run({}).chosen, ElementsAre(2U));
 }
 
@@ -306,12 +306,12 @@ TEST(EffectSearch, EvidenceOfOneColumnEqualsTheFormula) {
   Problem problem(4000, 1, 23);
   problem.residual += 0.05 * problem.candidate(0);
   problem.group_by(1);
-  problem.groups[0].usual = {0.05};
+  problem.groups[0].typical = {0.05};
   const EffectSearch search = problem.search();
   const GroupScore score = search.score(0, {});
   const double v = score.covariance(0, 0);
   const double b = score.estimate[0];
-  // Mixture prior: each share of all effects has sizes with this multiple of three usual sizes as spread.
+  // Mixture prior: each share of all effects has sizes with this multiple of three typical sizes as spread.
   double known = 0.0;
   for (const auto& [times, share] :
        {std::pair{1.0, 0.65}, std::pair{0.1, 0.1}, std::pair{3.0, 0.2}, std::pair{10.0, 0.05}}) {
@@ -517,7 +517,7 @@ TEST(Correlation, UsesColumnsWithoutTheirPartInTheBase) {
   EXPECT_NEAR(problem.search().correlation(0, 1, {}), expected, 1e-9);
 }
 
-TEST(LeftoverRows, AreOrthogonalToBaseAndOtherFindings) {
+TEST(RowsAfter, AreOrthogonalToBaseAndOtherFindings) {
   Problem problem(400, 6, 16, 0.7);
   problem.residual += 0.5 * problem.candidate(1) + 0.3 * problem.candidate(4);
   const EffectSearch search = problem.search();
@@ -602,7 +602,7 @@ TEST(EffectSearch, UncertainShapeIsNotARivalOfAnotherFinding) {
   EXPECT_GT(search.evidence({0, 2}, {0}), search.evidence({0, 1}, {0}) + 10.0);
 }
 
-// The usual shape of an effect is preferred on its own system; another system is another finding.
+// The typical shape of an effect is preferred on its own system; another system is another finding.
 TEST(EffectSearch, UsualShapeIsPreferredOnlyOnTheSameSystem) {
   Problem problem(600, 2, 31);
   problem.candidate(1) = problem.candidate(0) + 0.03 * problem.candidate(1);

@@ -17,7 +17,7 @@ constexpr double probability = 0.95;
 constexpr std::size_t draws = 40000;
 // Standard error of the 0.95 quantile of chi2 with one degree of freedom from 40,000 draws:
 // sqrt(p (1 - p) / n) / density = 0.0011 / 0.030 = 0.037. The tolerance is four of these.
-constexpr double tolerance = 0.15;
+constexpr double tolerance = 0.16;
 
 double quantile(const Eigen::MatrixXd& covariance, const std::vector<Directions>& directions) {
   return quantile_of_maximum(covariance, directions, probability, draws, 1);
@@ -32,7 +32,7 @@ TEST(MaximumScore, IndependentGroupsExceedOneGroup) {
   constexpr Eigen::Index count = 10;
   const double of_each = 1.0 - std::pow(probability, 1.0 / static_cast<double>(count));
   EXPECT_NEAR(quantile(Eigen::MatrixXd::Identity(count, count), std::vector<Directions>(count, {1, 1})),
-              chi_squared_value(of_each, 1.0), 2.0 * tolerance);  // the density there is half as large
+              chi_squared_value(of_each, 1.0), tolerance);  // standard error 0.040: the density is 0.027
 }
 
 TEST(MaximumScore, EqualGroupsCountAsOne) {
@@ -46,7 +46,7 @@ TEST(MaximumScore, GroupsOfSeveralDirectionsAreMeasuredAsOfOne) {
 }
 
 TEST(MaximumScore, ImitatedGroupsDoNotCount) {
-  EXPECT_EQ(quantile(Eigen::MatrixXd::Zero(2, 2), {{2, 0}}), 0.0);
+  EXPECT_EQ(quantile(Eigen::MatrixXd::Identity(2, 2), {{2, 0}}), 0.0);
 }
 
 }  // namespace

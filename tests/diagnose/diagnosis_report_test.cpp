@@ -202,7 +202,7 @@ Improvement improvement() {
   middle.aliases = {"lams-azimuth"};
   middle.rms_holdout = 0.161;
   middle.terms = 4;
-  middle.learnt = "sideslip counts, be it at the ports or at the laser";
+  middle.summary = "sideslip counts, be it at the ports or at the laser";
   middle.diagnosis.findings.clear();
   for (FlightDiagnosis& one : middle.diagnosis.flights) {
     for (std::size_t i = 0; i < one.before.size(); ++i) one.before[i] -= one.added[0][i];
@@ -376,8 +376,8 @@ TEST(DiagnosisReport, NamesTheCoefficientsThatAreFittedAgain) {
   Diagnosis diagnosis = unexplained();
   const auto summary = [&] { return diagnosis_report(diagnosis, named_model()).summary; };
   EXPECT_THAT(summary(), Contains(HasSubstr("0.196 hPa with the model's own coefficients fitted again")));
-  diagnosis.model_coefficients = {{"static-constant.a0", "1", 0.0, 0.1},
-                                  {"reference:static-constant.a0", "1", 0.0, 0.1}};
+  diagnosis.refitted_coefficients = {{"static-constant.a0", "1", 0.0, 0.1},
+                                     {"reference:static-constant.a0", "1", 0.0, 0.1}};
   EXPECT_THAT(summary(),
               Contains(HasSubstr(
                   "0.196 hPa with the coefficients of the model and of the reference system fitted again")));

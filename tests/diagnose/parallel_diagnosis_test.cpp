@@ -92,7 +92,7 @@ std::string beside_json(const Diagnosis& diagnosis) {
       held.insert(held.end(), alias.fixed.begin(), alias.fixed.end());
     }
   }
-  for (const CoefficientEstimate& estimate : diagnosis.model_coefficients)
+  for (const CoefficientEstimate& estimate : diagnosis.refitted_coefficients)
     numbers.insert(numbers.end(), {estimate.value, estimate.standard_error});
   return serialized(numbers) + serialized(held) + serialized(diagnosis.flights);
 }
@@ -152,7 +152,7 @@ TEST(ParallelWhatIf, ResultEqualsThatOfOneProcess) {
   const auto candidates = what_if_candidates(diagnosis, {});
   WhatIfOptions options;
   options.diagnose.training_share = 0.8;
-  options.model_coefficients = diagnosis.model_coefficients;
+  options.refitted_coefficients = diagnosis.refitted_coefficients;
   const auto of_team = [&](Communicator& comm, WhatIfOptions with) {
     const FlightSet all(paths, {{}, &comm});
     with.holdout = all.part(paths.size() - 1, 1);

@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 namespace {
 
 using pcor::RecordBlock;
+using pcor::records_per_block;
 using pcor::internal::BlockCache;
+
+constexpr RecordBlock whole_block{0, records_per_block};
+constexpr int max_blocks = BlockCache::capacity / records_per_block;
 
 /// A file whose numbers state their variable and record; it counts the requests.
 struct CountedFile {
@@ -36,27 +40,44 @@ TEST(BlockCache, ABlockIsRequestedOnce) {
 TEST(BlockCache, OtherBlocksAreRequested) {
   CountedFile file;
   file.read(3, {0, 50});
-  EXPECT_EQ(file.read(3, {0, 40}).size(), 40U);
+  EXPECT_DOUBLE_EQ(file.read(3, {0, 40}).back(), 3e6 + 39);
   EXPECT_DOUBLE_EQ(file.read(3, {50, 50}).front(), 3e6 + 50);
   EXPECT_DOUBLE_EQ(file.read(4, {0, 50}).front(), 4e6);
   EXPECT_EQ(file.requests, 4);
 }
 
-TEST(BlockCache, BlocksOfFastSeriesAreNotKept) {
+TEST(BlockCache, LongBlocksAreNotKept) {
   CountedFile file;
-  file.read(3, {0, pcor::records_per_block}, 25);
-  file.read(3, {0, pcor::records_per_block}, 25);
+  file.read(3, whole_block, 25);
+  file.read(3, whole_block, 25);
   EXPECT_EQ(file.requests, 2);
 }
 
-TEST(BlockCache, TheOldestBlocksAreReplaced) {
+TEST(BlockCache, KeepsBlocksUpToItsCapacity) {
   CountedFile file;
-  constexpr int many = 1000;  // 1000 blocks of 32 kB are 32 MB, and the cache keeps 4 MB
-  for (int variable = 0; variable < many; ++variable) file.read(variable, {0, pcor::records_per_block});
-  file.read(many - 1, {0, pcor::records_per_block});
-  EXPECT_EQ(file.requests, many);
-  EXPECT_DOUBLE_EQ(file.read(0, {0, pcor::records_per_block}).back(), pcor::records_per_block - 1.0);
-  EXPECT_EQ(file.requests, many + 1);
+  for (int variable = 0; variable < max_blocks; ++variable) file.read(variable, whole_block);
+  for (int variable = 0; variable < max_blocks; ++variable) file.read(variable, whole_block);
+  EXPECT_EQ(file.requests, max_blocks);
+}
+
+TEST(BlockCache, ReplacesTheLeastRecentlyUsedBlock) {
+  CountedFile file;
+  for (int variable = 0; variable < max_blocks; ++variable) file.read(variable, whole_block);
+  file.read(0, whole_block);
+  file.read(max_blocks, whole_block);  // replaces variable 1
+  file.read(0, whole_block);
+  EXPECT_EQ(file.requests, max_blocks + 1);
+  EXPECT_DOUBLE_EQ(file.read(1, whole_block).front(), 1e6);
+  EXPECT_EQ(file.requests, max_blocks + 2);
+}
+
+TEST(BlockCache, AFailedReadIsNotKept) {
+  CountedFile file;
+  double number = 0.0;
+  EXPECT_THROW(file.cache.read(3, {0, 1}, 1, &number, [](double*) { throw std::runtime_error("damaged"); }),
+               std::runtime_error);
+  file.read(3, {0, 1});
+  EXPECT_EQ(file.requests, 1);
 }
 
 }  // namespace

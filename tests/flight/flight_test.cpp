@@ -536,21 +536,21 @@ TEST_F(FlightTest, MissingModelVariableReportsRoleAndMatches) {
       maker.text(maker.series(name, "C", {1}), "long_name", "Total Temperature");
   });
   const Flight flight(path());
-  const auto refusal_of = [&](const char* name, const char* unit, const char* role) {
+  const auto rejection_reason_of = [&](const char* name, const char* unit, const char* role) {
     return error_of([&] { flight.conversion(name, unit, role); });
   };
-  EXPECT_THAT(refusal_of("QCF", "hPa", "dynamic_pressure"),
+  EXPECT_THAT(rejection_reason_of("QCF", "hPa", "dynamic_pressure"),
               IsError(Error::Code::variable, path().string(), "QCF", "QCFR, QCR, QCX", "dynamic_pressure",
                       "[variables]"));
-  EXPECT_THAT(refusal_of("RTF1", "K", "recovery_temperature"),
+  EXPECT_THAT(rejection_reason_of("RTF1", "K", "recovery_temperature"),
               IsError(Error::Code::variable, path().string(), "RTF1", "recovery_temperature",
                       "TTRR, TTRL, TTWH in degC, QCFK in K, ATX, RSTB1 in degC", "[variables]"))
       << "the words of the role first";
-  EXPECT_THAT(refusal_of("ALT", "degree", "attack"),
+  EXPECT_THAT(rejection_reason_of("ALT", "degree", "attack"),
               IsError(Error::Code::variable, "ALT", "attack", "degree", "[variables]"));
-  EXPECT_THAT(refusal_of("PSF", "hPa", "static_pressure"),
+  EXPECT_THAT(rejection_reason_of("PSF", "hPa", "static_pressure"),
               IsError(Error::Code::variable, "PSF", "only PSXC, already corrected", "pcor inspect"));
-  EXPECT_THAT(refusal_of("ENGTRQ", "percent", "engine_torque")->what(),
+  EXPECT_THAT(rejection_reason_of("ENGTRQ", "percent", "engine_torque")->what(),
               testing::Not(testing::HasSubstr("COUNTS")))
       << "many variables are ratios";
   EXPECT_STREQ(error_of([&] { flight.conversion("QCF", "hPa"); })->what(),
@@ -594,11 +594,11 @@ TEST_F(FlightTest, ModelUnitOverridesFileUnit) {
   EXPECT_EQ(stated("PSFD", "Pa"), 0.01) << "the file's unit is wrong";
   EXPECT_EQ(stated("HEAT", "hPa"), 1) << "its kind, too";
   EXPECT_EQ(stated("PSFD", "-1 hPa"), -1) << "a minus turns the sign";
-  const auto refusal_of = [&](const char* name, const char* unit) {
+  const auto rejection_reason_of = [&](const char* name, const char* unit) {
     return error_of([&] { stated(name, unit); });
   };
   for (const char* wrong : {"furlong", "K", "furlong-ish"})
-    EXPECT_THAT(refusal_of("BARE", wrong),
+    EXPECT_THAT(rejection_reason_of("BARE", wrong),
                 IsError(Error::Code::unit, wrong, "BARE", "unit.static_pressure", "[units]"));
 }
 
@@ -807,15 +807,15 @@ TEST_F(FlightTest, AmbiguousNumbersAreRefusedOnRead) {
     maker.numbers(packed, "valid_max", NC_DOUBLE, {20});
     maker.text(put("DIGITS"), "scale_factor", "0.5");
   });
-  const auto refusal_of = [this](const char* name) { return error_of([&] { read(name); }); };
-  EXPECT_THAT(refusal_of("SCALE"),
+  const auto rejection_reason_of = [this](const char* name) { return error_of([&] { read(name); }); };
+  EXPECT_THAT(rejection_reason_of("SCALE"),
               IsError(Error::Code::variable, path().string(), "\"text\"", "ncatted -a scale_factor,SCALE"));
-  EXPECT_THAT(refusal_of("ZERO"), IsError(Error::Code::variable, "scale_factor", "ZERO", "\"0\""));
-  EXPECT_THAT(refusal_of("NAN"), IsError(Error::Code::variable, "add_offset", "NAN"));
-  EXPECT_THAT(refusal_of("TWO"), IsError(Error::Code::variable, "add_offset", "TWO", "\"1, 2\""));
-  EXPECT_THAT(refusal_of("RANGE"), IsError(Error::Code::variable, "valid_range", "RANGE"));
-  EXPECT_THAT(refusal_of("ONE"), IsError(Error::Code::variable, "valid_range", "ONE"));
-  EXPECT_THAT(refusal_of("PACKED"), IsError(Error::Code::variable, "valid_max", "PACKED"));
+  EXPECT_THAT(rejection_reason_of("ZERO"), IsError(Error::Code::variable, "scale_factor", "ZERO", "\"0\""));
+  EXPECT_THAT(rejection_reason_of("NAN"), IsError(Error::Code::variable, "add_offset", "NAN"));
+  EXPECT_THAT(rejection_reason_of("TWO"), IsError(Error::Code::variable, "add_offset", "TWO", "\"1, 2\""));
+  EXPECT_THAT(rejection_reason_of("RANGE"), IsError(Error::Code::variable, "valid_range", "RANGE"));
+  EXPECT_THAT(rejection_reason_of("ONE"), IsError(Error::Code::variable, "valid_range", "ONE"));
+  EXPECT_THAT(rejection_reason_of("PACKED"), IsError(Error::Code::variable, "valid_max", "PACKED"));
   EXPECT_THAT(read("DIGITS"), ElementsAre(5, 5.5));
 }
 

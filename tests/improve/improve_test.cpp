@@ -184,7 +184,7 @@ TEST_F(Improve, AddsAnIdentifiedEffect) {
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp", "static-lag"));
   EXPECT_THAT(improvement.steps[1].title, "title of static-lag");
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("tau = 0.25 +- 0.02 s"));
+  EXPECT_THAT(improvement.steps[1].summary, HasSubstr("tau = 0.25 +- 0.02 s"));
   EXPECT_EQ(improvement.steps[1].terms, 3U);
   EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::none_detected);
   EXPECT_EQ(improvement.stop_reason, StopReason::nothing_missing);
@@ -253,7 +253,7 @@ TEST_F(Improve, ListsEffectsThatAreNotSeparable) {
   ambiguous.findings[0].advice.sentence = "fly two climbs";
   const Improvement improvement = run({ambiguous, diagnosis(Verdict::none_detected)}, {1.0, 0.5});
   EXPECT_THAT(improvement.steps[1].aliases, ElementsAre("temp-lag", "total-lag"));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("temp-lag, total-lag: fly two climbs"));
+  EXPECT_THAT(improvement.steps[1].summary, HasSubstr("temp-lag, total-lag: fly two climbs"));
 }
 
 TEST_F(Improve, DropsAnEffectThatRaisesTheHeldOutResidual) {
@@ -481,7 +481,7 @@ TEST_F(Improve, PartialFindingIsNotNamedAsCause) {
   const Improvement improvement =
       run({diagnosis(Verdict::partial, {"static-lag"}), diagnosis(Verdict::none_detected)}, {1.0, 0.9});
   EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("not be the cause"));
+  EXPECT_THAT(improvement.steps[1].summary, HasSubstr("not be the cause"));
 }
 
 TEST_F(Improve, TracesIfAPartialFindingDoesNotReduceTheResidual) {
@@ -501,7 +501,7 @@ TEST_F(Improve, AddsAFormulaOfATracedVariable) {
   EXPECT_THAT(effect.parameters, ElementsAre(-0.03));
   EXPECT_THAT(effect.source, HasSubstr("one.nc"));
   EXPECT_EQ(write_model(parse_model(write_model(improvement.model), "it")), write_model(improvement.model));
-  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("cause is unknown"));
+  EXPECT_THAT(improvement.steps[1].summary, HasSubstr("cause is unknown"));
 }
 
 TEST_F(Improve, ATracedVariableMustReduceTheResidual) {
@@ -596,7 +596,7 @@ TEST_F(Improve, UnknownRmsOfTheGivenModelIsOmitted) {
     fit.rms_before = std::nan("");
     return fit;
   };
-  EXPECT_THAT(run({diagnosis(Verdict::none_detected)}).steps[0].learnt,
+  EXPECT_THAT(run({diagnosis(Verdict::none_detected)}).steps[0].summary,
               AllOf(HasSubstr("0.9900"), testing::Not(HasSubstr("nan"))));
 }
 

@@ -81,7 +81,7 @@ class Law {
     State<double> state = state_of(sample);
     QualityFlags flags;
     const double* const parameters = chain_.parameters().data();
-    chain_.measure(state, parameters, flags);
+    chain_.correct_inputs(state, parameters, flags);
     chain_.correct(state, chain_.static_defect(state, parameters, flags), flags);
     return {state[Quantity::corrected_static_pressure], state[Quantity::corrected_dynamic_pressure]};
   }
@@ -111,7 +111,7 @@ class Law {
   double evaluate(const Sample& sample, QualityFlags& flags) const {
     State<double> state = state_of(sample);
     const double* const parameters = chain_.parameters().data();
-    chain_.measure(state, parameters, flags);
+    chain_.correct_inputs(state, parameters, flags);
     return chain_.static_defect(state, parameters, flags);
   }
 

@@ -58,7 +58,7 @@ ChainResult fly(const Chain& chain, const Recorded& recorded) {
   auto& [state, flags] = sample;
   for (const auto& [quantity, value] : recorded) state[quantity] = value;
   const double* parameters = chain.parameters().data();
-  chain.measure(state, parameters, flags);
+  chain.correct_inputs(state, parameters, flags);
   state[Quantity::static_defect] = chain.static_defect(state, parameters, flags);
   if (chain.has_lams())
     state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters, flags);
@@ -1222,7 +1222,7 @@ TEST(Chain, CompilesForAnotherScalarType) {
     for (const auto& [quantity, value] : full_record()) state[quantity] = Formulas(value);
     const std::vector<Formulas> parameters(chain.parameters().begin(), chain.parameters().end());
     pcor::NoQualityFlags none;
-    chain.measure(state, parameters.data(), none);
+    chain.correct_inputs(state, parameters.data(), none);
     state[Quantity::static_defect] = chain.static_defect(state, parameters.data(), none);
     state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters.data(), none);
     chain.correct(state, state[Quantity::static_defect], none);
@@ -1254,7 +1254,7 @@ TEST(Additions, EqualAConstantEffectAtTheSameLocation) {
     parameters.back() = 0.01;
     ChainResult added;
     for (const auto& [quantity, value] : recorded) added.state[quantity] = value;
-    chain.measure(added.state, parameters.data(), added.flags);
+    chain.correct_inputs(added.state, parameters.data(), added.flags);
     added.state[Quantity::static_defect] = chain.static_defect(added.state, parameters.data(), added.flags);
     EXPECT_EQ(chain.lams_static_defect(added.state, parameters.data(), added.flags),
               by_effect[Quantity::lams_static_defect]);
@@ -1277,7 +1277,7 @@ TEST(Additions, AddToTheMinimumOfThePolicy) {
   parameters.back() = 0.25;
   ChainResult added;
   for (const auto& [quantity, value] : recorded) added.state[quantity] = value;
-  chain.measure(added.state, parameters.data(), added.flags);
+  chain.correct_inputs(added.state, parameters.data(), added.flags);
   EXPECT_EQ(chain.static_defect(added.state, parameters.data(), added.flags), 7.25);
   EXPECT_TRUE(added.flags.has(Quality::minimum_applied));
 }

@@ -183,7 +183,7 @@ TEST(NimbusReference, WholeChain) {
     state[Quantity::recovery_temperature] = reference().at("rt_degC", row) + constants::ice_point;
     state[Quantity::vapor_pressure] = reference().at("chain_EWX_hPa", row);
     QualityFlags flags;
-    static_chain.measure(state, static_chain.parameters().data(), flags);
+    static_chain.correct_inputs(state, static_chain.parameters().data(), flags);
     const double static_defect = static_chain.static_defect(state, static_chain.parameters().data(), flags);
     const double dynamic_defect =
         dynamic_chain.static_defect(state, dynamic_chain.parameters().data(), flags);

@@ -130,7 +130,7 @@ std::array<double, uncertain_results.size()> scatter(const Model& model, const R
     std::vector<double> parameters = chain->parameters();
     if (i > 0) draw(engine, state, parameters);
     NoQualityFlags flags;
-    chain->measure(state, parameters.data(), flags);
+    chain->correct_inputs(state, parameters.data(), flags);
     state[Quantity::static_defect] = chain->static_defect(state, parameters.data(), flags);
     chain->correct(state, state[Quantity::static_defect], flags);
     chain->air(state, parameters.data(), flags);

@@ -148,12 +148,12 @@ TEST(Stages, DerivedQuantitiesDependOnDeclaredSourcesOnly) {
        {Quantity::dynamic_ratio, Quantity::mach, Quantity::attack_ratio, Quantity::sideslip_ratio,
         Quantity::attack, Quantity::sideslip, Quantity::vapor_pressure}) {
     State<double> before = state;
-    chain->measure(before, chain->parameters().data(), none);
+    chain->correct_inputs(before, chain->parameters().data(), none);
     const Quantities sources = MeasuredQuantities::sources(*chain, derived);
     for (const Quantity input : chain->inputs()) {
       State<double> after = state;
       after[input] = 1.01 * state[input];
-      chain->measure(after, chain->parameters().data(), none);
+      chain->correct_inputs(after, chain->parameters().data(), none);
       EXPECT_TRUE(after[derived] == before[derived] || is_in(sources, index(input)))
           << info_of(derived).name << " is moved by " << info_of(input).name;
     }

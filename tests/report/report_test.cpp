@@ -233,7 +233,7 @@ WhatIfPanel what_if_of(std::size_t samples) {
   for (WhatIfCoefficient& coefficient : panel.coefficients) {
     for (std::size_t i = 0; i < samples; ++i) coefficient.column.push_back(0.5 * static_cast<double>(i));
   }
-  panel.model_coefficients = 1;
+  panel.model_coefficient_count = 1;
   panel.effects = {{"static-lag", "a lag", "found", 0, 1, 1}};
   const WhatIfSums sums{{2.0, 1.0, 3.0, 0.5, 0.25, 4.0}, 10.0};
   panel.weights = {{{}, {sums}, {2.0, 1.0, 3.0}}};

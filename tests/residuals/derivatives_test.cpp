@@ -188,7 +188,7 @@ template <class S>
 State<S> run(const Chain& chain, const std::vector<S>& parameters) {
   State<S> state = recorded_state<S>();
   pcor::NoQualityFlags none;
-  chain.measure(state, parameters.data(), none);
+  chain.correct_inputs(state, parameters.data(), none);
   state[Quantity::static_defect] = chain.static_defect(state, parameters.data(), none);
   state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters.data(), none);
   chain.correct(state, state[Quantity::static_defect], none);
@@ -202,7 +202,7 @@ TEST(Chain, StaticDefectSeparatesStateFromParameters) {
   const Chain chain = build(memo_model(false));
   State<double> state = recorded_state<double>();
   pcor::NoQualityFlags none;
-  chain.measure(state, chain.parameters().data(), none);
+  chain.correct_inputs(state, chain.parameters().data(), none);
   const std::vector<Jet4> parameters = dual(chain.parameters());
   const Jet4 defect = chain.static_defect(state, parameters.data(), none);
   EXPECT_EQ(defect.a, chain.static_defect(state, chain.parameters().data(), none));
@@ -217,7 +217,7 @@ TEST(Chain, StaticDefectDerivativeIncludesThePolicy) {
   Chain chain = build(model);
   State<double> state = recorded_state<double>();
   pcor::NoQualityFlags none;
-  chain.measure(state, chain.parameters().data(), none);
+  chain.correct_inputs(state, chain.parameters().data(), none);
   Jet4 defect = chain.static_defect(state, dual(chain.parameters()).data(), none);
   EXPECT_NEAR(defect.v[0], 697.0 / 8, 1e-10);
 

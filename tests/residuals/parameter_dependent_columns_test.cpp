@@ -31,7 +31,7 @@ std::shared_ptr<FlightSamples> samples_of(const std::filesystem::path& path, con
 }
 
 /// Computes the columns again with another value of the last parameter.
-void move_columns(FlightSamples& samples, const ModelDefinition& model, double seconds) {
+void update_columns(FlightSamples& samples, const ModelDefinition& model, double seconds) {
   std::vector<double> parameters;
   for (const pcor::ModelEffect& effect : model.model.effects)
     parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
@@ -71,7 +71,7 @@ TEST(ParameterDependentColumns, SlopeEqualsTheFiniteDifference) {
   const std::vector<double> slope = samples->model.parameter_dependent[0].slope;
   constexpr double step = 0.02;
   const double* const column = samples->model.find(Quantity::airspeed_rate)->data();
-  move_columns(*samples, model, 0.5 + step);
+  update_columns(*samples, model, 0.5 + step);
   EXPECT_EQ(samples->model.find(Quantity::airspeed_rate)->data(), column) << "others point to it";
   double largest = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(ParameterDependentColumns, MissingSamplesAreIndependentOfTheDelay) {
   const auto samples = samples_of(pcor::test::short_flight(), model);
   const std::vector<double> at_zero = *samples->model.find(Quantity::airspeed_rate);
   for (const double seconds : {-5.0, 1.4, 30.0}) {
-    move_columns(*samples, model, seconds);
+    update_columns(*samples, model, seconds);
     const std::vector<double>& now = *samples->model.find(Quantity::airspeed_rate);
     for (std::size_t i = 0; i < now.size(); ++i)
       EXPECT_EQ(std::isnan(now[i]), std::isnan(at_zero[i])) << seconds << ' ' << i;
@@ -134,7 +134,7 @@ TEST(ParameterDependentColumns, DependOnTheDryingTime) {
   ASSERT_EQ(samples->model.parameter_dependent.size(), 1U);
   const std::vector<double> before = *samples->model.find(Quantity::wetness);
   const std::vector<double> slope = samples->model.parameter_dependent[0].slope;
-  move_columns(*samples, model, 8.1);
+  update_columns(*samples, model, 8.1);
   const std::vector<double>& now = *samples->model.find(Quantity::wetness);
   double largest = 0.0;
   for (std::size_t i = 0; i < before.size(); ++i) {

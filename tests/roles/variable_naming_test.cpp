@@ -17,7 +17,7 @@ namespace {
 
 using testing::Contains;
 
-std::optional<Error> refusal_of(const std::string& text) {
+std::optional<Error> rejection_reason_of(const std::string& text) {
   return test::error_of([&] { parse_naming(text, "mine.toml"); });
 }
 
@@ -53,23 +53,25 @@ TEST(VariableNaming, DataAreComplete) {
 }
 
 TEST(VariableNaming, InvalidFilesAreRefused) {
-  EXPECT_THAT(refusal_of("name = \"mine\""), test::IsError(Error::Code::definition, "pcor-aircraft/1"));
-  EXPECT_THAT(refusal_of("format = \"pcor-aircraft/2\"\nname = \"mine\""),
+  EXPECT_THAT(rejection_reason_of("name = \"mine\""),
               test::IsError(Error::Code::definition, "pcor-aircraft/1"));
-  EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""),
+  EXPECT_THAT(rejection_reason_of("format = \"pcor-aircraft/2\"\nname = \"mine\""),
+              test::IsError(Error::Code::definition, "pcor-aircraft/1"));
+  EXPECT_THAT(rejection_reason_of("format = \"pcor-aircraft/1\"\nname = \"mine\""),
               test::IsError(Error::Code::definition, "title"));
-  EXPECT_THAT(refusal_of(head + "[series]\nheigth = [\"ALT\"]"),
+  EXPECT_THAT(rejection_reason_of(head + "[series]\nheigth = [\"ALT\"]"),
               test::IsError(Error::Code::definition, "heigth"));
-  EXPECT_THAT(refusal_of(head + "[series]\naltitude = \"ALT\""),
+  EXPECT_THAT(rejection_reason_of(head + "[series]\naltitude = \"ALT\""),
               test::IsError(Error::Code::definition, "mine.toml:5"));
-  EXPECT_THAT(refusal_of(head + "[series]\naltitude = [7]"),
+  EXPECT_THAT(rejection_reason_of(head + "[series]\naltitude = [7]"),
               test::IsError(Error::Code::definition, "mine.toml:5"));
-  EXPECT_THAT(refusal_of(head + "[pressures]\nmeasured = [[\"PS\"]]"),
+  EXPECT_THAT(rejection_reason_of(head + "[pressures]\nmeasured = [[\"PS\"]]"),
               test::IsError(Error::Code::definition, "mine.toml:5"));
-  EXPECT_THAT(refusal_of(head + "[pressures]\nboth = []"), test::IsError(Error::Code::definition, "both"));
-  EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\""),
+  EXPECT_THAT(rejection_reason_of(head + "[pressures]\nboth = []"),
+              test::IsError(Error::Code::definition, "both"));
+  EXPECT_THAT(rejection_reason_of(head + "[[thermometer]]\nvariable = \"T\""),
               test::IsError(Error::Code::definition, "mine.toml:4"));
-  EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\"\nrecovery_factor = \"mine\""),
+  EXPECT_THAT(rejection_reason_of(head + "[[thermometer]]\nvariable = \"T\"\nrecovery_factor = \"mine\""),
               test::IsError(Error::Code::definition, "mine.toml:6"));
 }
 

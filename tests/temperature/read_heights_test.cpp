@@ -80,7 +80,7 @@ double mean(const FlightAir& air, const Value& value) {
   return sum / count;
 }
 
-TEST(LawDoubt, EqualsTheMeanOfTheStatedUncertainty) {
+TEST(LawError, EqualsTheMeanOfTheStatedUncertainty) {
   pcor::ModelDefinition model = pcor::test::laser_model();
   const FlightAir air = read_flight_air({pcor::test::short_flight()}, 0, model);
   EXPECT_FALSE(stated_law_variance(model, air));

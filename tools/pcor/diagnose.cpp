@@ -303,7 +303,7 @@ void run(const DiagnoseArguments& options) {
     if (!options.common.report.empty()) {
       diagnose_with.series_of = diagnosis.flights_with_records();
       tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
-                      {diagnose_with, {}, true, diagnosis.model_coefficients});
+                      {diagnose_with, {}, true, diagnosis.refitted_coefficients});
       add_commands(tried, options.model, options.comparison.flights.front(),
                    command_line(options.comparison) + command_line(options.fit));
     }

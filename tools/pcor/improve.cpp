@@ -95,7 +95,7 @@ void print(const Improvement& improvement, const ChosenReferences& references,
   if (is_verbose()) {
     print_formatted("\n");
     for (const ImproveStep& step : improvement.steps) {
-      print_formatted("{}\n", step.learnt);
+      print_formatted("{}\n", step.summary);
       if (const std::string text = rivals_text(step); !text.empty()) print_formatted("  {}\n", text);
     }
   }

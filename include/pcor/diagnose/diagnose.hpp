@@ -434,15 +434,15 @@ struct Diagnosis {
   std::vector<UnnamedRole> unnamed_roles{};  ///< the notes state them
   /// Free coefficients of the model, refitted (see `is_refitted`), with names like "static-qp.a2", followed
   /// by those of the references' models.
-  std::vector<CoefficientEstimate> model_coefficients{};
+  std::vector<CoefficientEstimate> refitted_coefficients{};
   std::size_t candidates = 0;  ///< number of effects tested
   double threshold = 0.0;      ///< chi2 threshold for a detection
   /// rms residual of the unchanged model, hPa, as in `compare` and `refit`.
   double rms_given = 0.0;
   double noise_rms = 0.0;  ///< rms noise with the unchanged model, hPa
   /// Whether the free coefficients of the model and of the references' models are refitted in
-  /// `model_coefficients`, `residual_rms` and `flights`, by linearised least squares. By GPS alone they stay
-  /// as given.
+  /// `refitted_coefficients`, `residual_rms` and `flights`, by linearised least squares. By GPS alone they
+  /// stay as given.
   bool is_refitted = true;
   double residual_rms = 0.0;             ///< rms residual, hPa
   double residual_rms_held_out = 0.0;    ///< cross-validated rms residual (five folds), hPa

@@ -29,7 +29,7 @@ struct WhatIfOptions {
   FlightSet holdout{};    ///< flights not used in any fit
   bool is_robust = true;  ///< true: outliers are down-weighted, as by the loss of a refit
   /// Coefficients of the model at the residual of the report; default: unchanged.
-  std::vector<CoefficientEstimate> model_coefficients{};
+  std::vector<CoefficientEstimate> refitted_coefficients{};
 };
 
 /// Data of a flight for the what-if panel.

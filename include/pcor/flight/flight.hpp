@@ -157,8 +157,8 @@ class Flight {
   /// Reads `block.count * rate` values at the variable's rate, converted, into `out`. Missing is NaN.
   /// @return values rejected although the file does not mark them
   /// @throws Error if the variable is absent, not a time series, or has an attribute that prevents its
-  /// decoding, if the block extends beyond the last record, or the file was replaced or changed since it was
-  /// opened.
+  /// decoding, if the block extends beyond the last record, or if values are read from a file that was
+  /// replaced or changed since it was opened. Blocks read before come from memory.
   RejectedCounts read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
                       double* out) const;
 

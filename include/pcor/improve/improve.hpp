@@ -67,7 +67,7 @@ struct ImproveStep {
   double rms_holdout = 0.0;
   double noise_rms = 0.0;  ///< noise of the residual in this step, hPa
   std::size_t terms = 0;   ///< free coefficients
-  std::string learnt{};    ///< summary of the step, one sentence
+  std::string summary{};   ///< summary of the step, one sentence
   Diagnosis diagnosis{};   ///< diagnosis of the model in this step
   /// Alternatives with different corrected static pressures; the added effect is the first. Empty if the
   /// choice does not matter.
@@ -86,7 +86,7 @@ void describe(const ImproveStep& self, Field& field) {
   field("rms_holdout_hpa", self.rms_holdout, "rms residual on held-out samples, otherwise cross-validated");
   field("noise_rms_hpa", self.noise_rms, "rms noise of the residual");
   field("terms", self.terms, "number of free coefficients");
-  field("learnt", self.learnt, "summary of the step");
+  field("learnt", self.summary, "summary of the step");
   field("delivered", self.delivered, "id of the effect in the written model; may be empty");
   field("rival_error_hpa", self.rival_error, "expected error of that choice, rms");
   field("rivals", self.rivals, "alternatives with different corrected static pressures");

@@ -120,8 +120,8 @@ struct Inspection {
   std::string institution{};
   std::string naming{};  ///< naming convention, e.g. "faam-core"
   std::string naming_title{};
-  std::vector<std::string>
-      matching_namings{};  ///< matching naming conventions; several: ambiguous, empty: unknown
+  /// Naming conventions that match; several: ambiguous, empty: unknown.
+  std::vector<std::string> matching_namings{};
   TimeAxis time{};
   std::size_t records = 0;
   std::map<int, std::size_t> rates{};  ///< number of variables for each number of samples per record

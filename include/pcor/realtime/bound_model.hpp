@@ -74,7 +74,7 @@ class BoundModel {
     return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
   }
 
-  /// True if a recorded ambient temperature is calibrated, in place, by `Chain::measure`.
+  /// True if a recorded ambient temperature is calibrated, in place, by `Chain::correct_inputs`.
   bool calibrates_recorded_temperature() const {
     return acts(EffectLocation::ambient_temperature) && recorded(Quantity::ambient_temperature);
   }
@@ -93,14 +93,14 @@ class BoundModel {
 
   /// Time constant, s, of a quantity computed from earlier samples (`EffectInfo::memory`): the coefficient of
   /// the effect; without such an effect, as for a formula, its neutral value.
-  double time_of(Quantity remembered) const {
+  double time_of(Quantity quantity) const {
     for (const Term& term : effects_) {
       if (term.effect >= catalogue_size) continue;
       const Memory& memory = effect_info[term.effect].memory;
-      if (memory.of == remembered) return parameters_[term.first_parameter + memory.parameter];
+      if (memory.of == quantity) return parameters_[term.first_parameter + memory.parameter];
     }
     for (const EffectInfo& info : effect_info) {
-      if (info.memory.of == remembered) return info.parameters[info.memory.parameter].neutral;
+      if (info.memory.of == quantity) return info.parameters[info.memory.parameter].neutral;
     }
     return 0.0;
   }
@@ -133,8 +133,8 @@ class BoundModel {
     return term.effect == Term::is_surface ? &surfaces_[term.formula] : nullptr;
   }
 
-  /// Value of effect number `effect` of the model for a state after `Chain::measure`, in the unit of its
-  /// location. Zero for an effect on the laser's beam if there is no laser. @param coefficients the
+  /// Value of effect number `effect` of the model for a state after `Chain::correct_inputs`, in the unit of
+  /// its location. Zero for an effect on the laser's beam if there is no laser. @param coefficients the
   /// coefficients of this effect only
   template <class S, class P>
   Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* coefficients) const {

@@ -29,7 +29,7 @@ auto is_impossible_defect(const R& defect, const S& q) {
 
 /// Inverts the measurement, stage by stage, from recorded values to free air, for one model.
 ///
-///     measure -> static_defect -> correct -> air -> LAMS temperature and dynamic pressure
+///     correct_inputs -> static_defect -> correct -> air -> LAMS temperature and dynamic pressure
 ///             -> lams_static_defect
 ///
 /// Every stage reads and writes a `State`. It is a template over the scalars of the state, `S`, and of the
@@ -56,7 +56,7 @@ class Chain : public BoundModel {
   /// of a recorded ambient temperature. Implausible recorded values (`is_implausible`) are treated as
   /// missing.
   template <class S, class P, class Flags>
-  void measure(State<S>& state, const P* parameters, Flags& flags) const {
+  void correct_inputs(State<S>& state, const P* parameters, Flags& flags) const {
     for (const Quantity input : inputs()) drop_implausible(input, state);
     const S p = state[Quantity::static_pressure];
     const S q = state[Quantity::dynamic_pressure];
@@ -178,7 +178,7 @@ class Chain : public BoundModel {
     };
     if (has_temperature()) {
       const S& ambient = state[Quantity::ambient_temperature];
-      // A functor may have written it after `measure`.
+      // A functor may have written it after `correct_inputs`.
       if (!derives_temperature()) drop_implausible(Quantity::ambient_temperature, state);
       flags.set(is_missing(derives_temperature() ? thermometer + delta : ambient),
                 Quality::temperature_missing);
@@ -241,7 +241,7 @@ class Chain : public BoundModel {
   template <class S, class P>
   S airspeed_along_beam(State<S> state, const P* parameters) const {
     NoQualityFlags flags;
-    measure(state, parameters, flags);
+    correct_inputs(state, parameters, flags);
     correct(state, static_defect(state, parameters, flags), flags);
     air(state, parameters, flags);
     const S airspeed = state[Quantity::corrected_airspeed];

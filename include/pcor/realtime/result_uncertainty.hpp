@@ -279,7 +279,7 @@ class ResultUncertainty final : public Functor {
     NoQualityFlags flags;
     State<double> state = inputs_;
     const double* const parameters = parameters_.data();
-    chain_.measure(state, parameters, flags);
+    chain_.correct_inputs(state, parameters, flags);
     const double at_ports = chain_.sum_at_ports(state, parameters) + at_ports_;
     state[Quantity::static_defect] = at_ports * chain_.taper_fraction(state) + after_law_;
     chain_.correct(state, state[Quantity::static_defect], flags);

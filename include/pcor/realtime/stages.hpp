@@ -72,7 +72,7 @@ inline Quantities read_of_beam(const Chain& chain) {
                  chain.read_at(EffectLocation::beam_azimuth)});
 }
 
-/// Pressures at the ports, and the inputs of the effects: `Chain::measure`.
+/// Pressures at the ports, and the inputs of the effects: `Chain::correct_inputs`.
 struct MeasuredQuantities {
   static Quantities reads(const Correction& correction) {
     const Chain& chain = correction.chain;
@@ -103,7 +103,7 @@ struct MeasuredQuantities {
 
   template <class S, class P, class Flags>
   static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
-    correction.chain.measure(state, parameters, flags);
+    correction.chain.correct_inputs(state, parameters, flags);
   }
 
   /// Recorded quantities that effects modify.

@@ -248,7 +248,7 @@ struct WhatIfPanel {
   bool is_start_fitted = false;
   /// Coefficients of the model, followed by those of the effects.
   std::vector<WhatIfCoefficient> coefficients;
-  std::size_t model_coefficients = 0;  ///< number of coefficients of the model
+  std::size_t model_coefficient_count = 0;  ///< number of coefficients of the model
   std::vector<WhatIfEffect> effects;
   std::vector<std::string> x_choices{};  ///< columns available as x axis of the residual
   double autocorrelation_time = 1.0;     ///< see `BinnedPanel`

@@ -126,7 +126,8 @@ class Residuals {
   std::unique_ptr<ModelOnSamples> model_;
   std::unique_ptr<ReferenceOnSamples> reference_;
   std::vector<double> parameters_;
-  std::vector<bool> terms_;   // one per parameter: whether delta-p alone depends on it, as a linear term
+  std::vector<bool>
+      linear_terms_;          // one per parameter: whether delta-p alone depends on it, as a linear term
   std::vector<bool> linear_;  // one per parameter: linear term without a minimum of delta-p
   std::vector<Mask> mask_;
 };

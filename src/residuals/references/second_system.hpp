@@ -23,39 +23,39 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
  public:
   SecondSystemOnSamples(const ModelDefinition& system, ComparedPressure compared,
                         const FlightSamples& samples, const ModelOnSamples& model)
-      : own_(system, samples.reference), model_(model), compared_(compared) {}
+      : second_(system, samples.reference), model_(model), compared_(compared) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     const std::size_t count = block.samples.size();
     std::vector<double> of_model(count);
     const Quantity added = is_total() ? Quantity::port_dynamic_pressure : Quantity::static_defect;
     model_.port_pressure_plus(added, block.model, count, parameters, of_model.data());
-    own_.port_pressure_plus(added, block.reference, count, own_of(parameters), out);
+    second_.port_pressure_plus(added, block.reference, count, parameters_of_second(parameters), out);
     for (std::size_t i = 0; i < count; ++i) out[i] -= of_model[i];
   }
 
   void residuals(const std::vector<std::size_t>& samples, const Jet* parameters, Jet* out) const override {
-    const std::vector<Jet> of_system = pressures(own_, samples, own_of(parameters));
+    const std::vector<Jet> of_system = pressures(second_, samples, parameters_of_second(parameters));
     const std::vector<Jet> of_model = pressures(model_, samples, parameters);
     std::transform(of_system.begin(), of_system.end(), of_model.begin(), out, std::minus<>());
   }
 
-  std::vector<Batch::Input> columns() const override { return own_.columns(); }
-  const ModelOnSamples* model() const override { return &own_; }
+  std::vector<Batch::Input> columns() const override { return second_.columns(); }
+  const ModelOnSamples* model() const override { return &second_; }
 
   Mask why_missing(std::size_t sample) const override {
     if (model_.is_missing_needed(sample)) return Mask::missing;
-    return own_.is_missing_needed(sample) ? Mask::reference : Mask::impossible;
+    return second_.is_missing_needed(sample) ? Mask::reference : Mask::impossible;
   }
 
  private:
   /// Parameters of the system's model, among all.
   template <class S>
-  const S* own_of(const S* parameters) const {
+  const S* parameters_of_second(const S* parameters) const {
     return parameters + model_.parameters().size();
   }
 
-  /// Without derivatives where the parameters of the system have none.
+  /// Corrected pressures, with derivatives only if the parameters of the system have derivatives.
   std::vector<Jet> pressures(const ModelOnSamples& system, const std::vector<std::size_t>& samples,
                              const Jet* parameters) const {
     std::vector<double> constants;
@@ -65,6 +65,7 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
       varies = varies || !each->v.isZero(0.0);
     }
     std::vector<Jet> result;
+    result.reserve(samples.size());
     for (const std::size_t sample : samples) {
       result.push_back(varies ? pressure_at(system, sample, parameters)
                               : Jet(pressure_at(system, sample, constants.data())));
@@ -81,7 +82,7 @@ class SecondSystemOnSamples final : public ReferenceOnSamples {
 
   bool is_total() const { return compared_ == ComparedPressure::total_pressure; }
 
-  ModelOnSamples own_;
+  ModelOnSamples second_;
   const ModelOnSamples& model_;
   ComparedPressure compared_;
 };

@@ -7,7 +7,7 @@
 
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include "model_io/sensor_doubt.hpp"
+#include "model_io/sensor_uncertainty.hpp"
 
 namespace pcor::internal {
 
@@ -15,16 +15,16 @@ namespace pcor::internal {
 ///
 /// Laser: scale and angles of the beam. Second static system: zero, gain and drift of its transducers, and
 /// the stated residual error of delta-p of its model. Thermometer: offset and recovery factor. Sizes:
-/// `doubts_of`.
+/// `uncertainties_of`.
 ///
 /// A second system whose law is neither fitted nor fixed by the fit also has the stated errors of its
 /// coefficients, one column for each independent direction.
-class ReferenceDoubt {
+class ReferenceUncertainty {
  public:
   /// @param trusted the calibration is assumed exact: its uncertainty is zero
   /// @param with_law add the stated errors of the law of a second system, also if it is trusted
-  ReferenceDoubt(const ModelDefinition& model, const Reference& reference, bool trusted,
-                 bool with_law = false);
+  ReferenceUncertainty(const ModelDefinition& model, const Reference& reference, bool trusted,
+                       bool with_law = false);
 
   /// Names like "lams-scale.scale"; for a second system with the variable of the sensor in front, like
   /// "QCFR: qcf-zero.offset"; for its law with the name of the law and both pressures. The same name in
