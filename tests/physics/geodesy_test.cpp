@@ -97,13 +97,6 @@ TEST(Geodesy, GeopotentialHeightMatchesStandardAtmosphere) {
     EXPECT_NEAR(geopotential_height(latitude, row.geometric), row.geopotential, 0.55) << row.geometric;
 }
 
-TEST(Geodesy, CoriolisParameterAgreesWithTextbook) {
-  // Holton, An Introduction to Dynamic Meteorology: 1.031e-4 1/s at 45 degrees north.
-  EXPECT_NEAR(pcor::coriolis_parameter(45.0), 1.031e-4, 5e-8);
-  EXPECT_EQ(pcor::coriolis_parameter(-45.0), -pcor::coriolis_parameter(45.0));
-  EXPECT_EQ(pcor::coriolis_parameter(0.0), 0.0);
-}
-
 TEST(Geodesy, MissingInputsGiveNan) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(std::isnan(normal_gravity(nan)));
@@ -114,5 +107,4 @@ TEST(Geodesy, CompilesForAnotherScalarType) {
   const Physics latitude(40.0), height(9000.0);
   EXPECT_EQ(normal_gravity(latitude).value(), normal_gravity(40.0));
   EXPECT_EQ(geopotential_height(latitude, height).value(), geopotential_height(40.0, 9000.0));
-  EXPECT_EQ(pcor::coriolis_parameter(latitude).value(), pcor::coriolis_parameter(40.0));
 }

@@ -19,9 +19,6 @@ inline constexpr double ellipsoid_eccentricity_squared = 6.69437999014e-3;
 /// Centrifugal over gravitational acceleration at the equator, m = omega^2 a^2 b/(GM), 1. WGS 84.
 inline constexpr double ellipsoid_rotation = 3.449786506841e-3;
 
-/// Rate of rotation of the earth, rad/s. WGS 84.
-inline constexpr double earth_rotation_rate = 7.292115e-5;
-
 }  // namespace constants
 
 /// Normal gravity on the ellipsoid, m/s2, at `latitude` in degrees:
@@ -68,14 +65,6 @@ S geopotential_height(const S& latitude, const S& height) {
   const S across = height * S(1.0 / constants::ellipsoid_semi_major_axis);
   return normal_gravity(latitude) * S(1.0 / constants::standard_gravity) * height *
          (S(1.0) - gravity_decrease(latitude) * height + across * across);
-}
-
-/// Coriolis parameter, 1/s: 2 Omega sin(latitude), latitude in degrees. Negative in the south.
-template <class S>
-S coriolis_parameter(const S& latitude) {
-  require_scalar<S>();
-  using std::sin;
-  return S(2.0 * constants::earth_rotation_rate) * sin(S(latitude * S(constants::radians_per_degree)));
 }
 
 }  // namespace pcor
