@@ -281,7 +281,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series, records);
     part.notes = std::move(notes);
     for (std::size_t m = 0; m < pairings.size(); ++m) {
-      part.models[m].uncertainty =
+      part.models[m].by_uncertainty =
           uncertainties[m].columns(samples[m], records[m].parts.front()).colwise().sum();
     }
     return part;

@@ -90,8 +90,8 @@ void ModelSums::add(const ModelSums& other) {
   reference_defect += other.reference_defect;
   reference_defect_squares += other.reference_defect_squares;
   pressures.add(other.pressures);
-  uncertainty =
-      uncertainty.size() == 0 ? other.uncertainty : Eigen::VectorXd(uncertainty + other.uncertainty);
+  by_uncertainty = by_uncertainty.size() == 0 ? other.by_uncertainty
+                                              : Eigen::VectorXd(by_uncertainty + other.by_uncertainty);
   for (std::size_t r = 0; r < regime_count; ++r) regimes[r].add(other.regimes[r]);
   for (std::size_t b = 0; b < bandings.size(); ++b) {
     for (const auto& [band, sums] : other.bands[b]) bands[b][band].add(sums);
@@ -151,7 +151,7 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   if (reference.is_static_pressure()) result.static_pressure = orthogonal_fit(sums.pressures);
   result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;
   if (sums.all.samples > 0)
-    result.reference_error = sums.uncertainty.norm() / static_cast<double>(sums.all.samples);
+    result.reference_error = sums.by_uncertainty.norm() / static_cast<double>(sums.all.samples);
   const double memory = sums.all.sum_variance / (count * result.all.scatter() * result.all.scatter());
   result.autocorrelation_time = std::isfinite(memory) ? std::max(1.0, memory) : nan;
   for (std::size_t r = 0; r < regime_count; ++r) {

@@ -40,8 +40,8 @@ struct ModelSums {
   ResidualSums flaps_out{};
   double reference_defect = 0.0;  // delta-p of the reference
   double reference_defect_squares = 0.0;
-  PairMoments pressures{};        // model and reference
-  Eigen::VectorXd uncertainty{};  // what each uncertainty of the reference does to the residuals
+  PairMoments pressures{};           // model and reference
+  Eigen::VectorXd by_uncertainty{};  // change of the residuals by each uncertainty of the reference
   std::array<ResidualSums, regime_count> regimes{};
   std::array<std::map<long, ResidualSums>, banding_count> bands{};
   std::vector<WorstInterval> worst{};  // `worst_count` entries at most
@@ -60,7 +60,7 @@ struct ModelSums {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(all, flaps_out, reference_defect, reference_defect_squares, pressures, uncertainty, regimes,
+    archive(all, flaps_out, reference_defect, reference_defect_squares, pressures, by_uncertainty, regimes,
             bands, worst);
   }
 };

@@ -71,14 +71,14 @@ class Blocks {
 /// Sums over the bins of a flight with one reference, for one set of equations.
 struct FlightScores {
   std::vector<Eigen::MatrixXd> blocks;  ///< derivatives of the scores by all parameters, and the scores
-  Eigen::MatrixXd covariance;   ///< scores of all equations by the noise; zero except for the last equations
-  Eigen::VectorXd zero;         ///< derivatives of the scores of all equations by the zero of the flight
-  Eigen::MatrixXd misfit;       ///< derivatives of the sum of the scores by the misfit of the law
-  Eigen::MatrixXd uncertainty;  ///< derivatives by the errors of the reference, in standard uncertainties
+  Eigen::MatrixXd covariance;  ///< scores of all equations by the noise; zero except for the last equations
+  Eigen::VectorXd zero;        ///< derivatives of the scores of all equations by the zero of the flight
+  Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
+  Eigen::MatrixXd by_uncertainty;  ///< derivatives by the errors of the reference, in standard uncertainties
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(blocks, covariance, zero, misfit, uncertainty);
+    archive(blocks, covariance, zero, misfit, by_uncertainty);
   }
 };
 
@@ -253,7 +253,7 @@ class ScoreSums {
     found.matrix = Eigen::MatrixXd::Zero(size_, size_);
     found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted_, fitted_);
     found.jackknife = Eigen::VectorXd::Constant(fitted_, nan);
-    const Eigen::MatrixXd fixed = main_.task().uncertainty(held, held);
+    const Eigen::MatrixXd fixed = main_.task().stated_covariance(held, held);
     found.matrix.bottomRightCorner(size_ - fitted_, size_ - fitted_) = fixed;
     // Parameters at a bound have no variance.
     std::vector<Eigen::Index> varying;
@@ -325,7 +325,7 @@ class ScoreSums {
       *zero++ += flight.zero;
       if (part.shares_noise) roots.push_back(covariance_root(flight.covariance));
       by_misfit_.middleRows(first, part.width) += flight.misfit;
-      by_uncertainty_.middleRows(first, part.width) += flight.uncertainty;
+      by_uncertainty_.middleRows(first, part.width) += flight.by_uncertainty;
       for (const Eigen::MatrixXd& sums : flight.blocks) block++->middleRows(first, part.width) += sums;
     }
     if (part.shares_noise) static_references_.push_back({&flights, std::move(part.noise), std::move(roots)});
@@ -379,7 +379,7 @@ class ScoreSums {
     if (part.shares_noise)
       part.noise[flight] = flights.residual(flight, solution_.values) - misfit_.at(part.states[flight]);
     if (!part.by_uncertainty.empty())
-      scores.uncertainty(Eigen::all, part.uncertainty_indices) =
+      scores.by_uncertainty(Eigen::all, part.uncertainty_indices) =
           slope * part_columns.transpose() * part.by_uncertainty[flight];
     for (Eigen::Index i = 0; i < part_columns.rows(); ++i) {
       Eigen::MatrixXd& block = scores.blocks[numbers_(flight, time[static_cast<std::size_t>(i)])];

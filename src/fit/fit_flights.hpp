@@ -75,8 +75,8 @@ class FitFlight {
 
  private:
   const FitTask* task_;
-  std::shared_ptr<FlightSamples>
-      recomputed_samples_;  // samples of `rows_`, if columns depend on coefficients
+  // Samples of `rows_`, if columns depend on coefficients.
+  std::shared_ptr<FlightSamples> recomputed_samples_;
   LinearRows rows_;
 };
 

@@ -140,14 +140,14 @@ FitTask fit_task(const ModelDefinition& model, const References& references, con
   const Reference& reference = first_of(references);
   FitTask task{model, reference, options, flights};
   find_parameters(task);
-  task.uncertainty = stated_covariance_of(task);
+  task.stated_covariance = stated_covariance_of(task);
   task.report_progress = [&progress = options.progress, passes = std::size_t{0}]() mutable {
     ++passes;
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
   };
   for (std::size_t i = 1; i < references.size(); ++i) {
-    FitTask with{model,           *references[i], options,          flights,
-                 task.parameters, task.start,     task.uncertainty, [] {}};
+    FitTask with{model,      *references[i],         options, flights, task.parameters,
+                 task.start, task.stated_covariance, [] {}};
     const ModelDefinition* const first = reference.model();
     const ModelDefinition* const other = references[i]->model();
     with.shares_system = first != nullptr && other != nullptr && first->model.name == other->model.name &&

@@ -36,8 +36,8 @@ struct FitTask {
   /// The parameters of the model, then those of a static system that is the reference, in the order of
   /// `Residuals::parameters`.
   std::vector<FitParameter> parameters{};
-  Eigen::VectorXd start{};        ///< their values in the files
-  Eigen::MatrixXd uncertainty{};  ///< covariance of these values stated in the files; zero if not stated
+  Eigen::VectorXd start{};                  ///< their values in the files
+  Eigen::MatrixXd stated_covariance{};      ///< covariance in the files; zero if not stated
   std::function<void()> report_progress{};  ///< called after every pass over the flights
   /// Fit tasks of the further references; these have no further references.
   std::vector<FitTask> further{};

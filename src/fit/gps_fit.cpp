@@ -61,7 +61,7 @@ class GpsSolver {
         before_(solution.values(requested_)),
         carried_(Eigen::MatrixXd::Zero(count_, as_index(fixed_coefficients_.size()))),
         columns_(requested_),
-        fixed_covariance_(task_.uncertainty(fixed_coefficients_, fixed_coefficients_)) {
+        fixed_covariance_(task_.stated_covariance(fixed_coefficients_, fixed_coefficients_)) {
     if (!is_alone_ && carried_.cols() > 0)
       carried_ =
           covariance.matrix.topRightCorner(count_, carried_.cols()) * information_inverse(fixed_covariance_);
@@ -393,11 +393,11 @@ class GpsSolver {
     stated = 0.5 * (stated + stated.transpose()).eval();
     covariance_.by_noise = is_alone_ ? by_noise : stated;
     if (covariance_.by_uncertainty.size() > 0) covariance_.by_uncertainty = kept * covariance_.by_uncertainty;
-    const Eigen::MatrixXd uncertainty = task_.uncertainty(fixed_coefficients_, fixed_coefficients_);
-    const Eigen::MatrixXd across = by_fixed * uncertainty;
+    const Eigen::MatrixXd of_fixed = task_.stated_covariance(fixed_coefficients_, fixed_coefficients_);
+    const Eigen::MatrixXd across = by_fixed * of_fixed;
     covariance_.by_flights = stated - across * by_fixed.transpose();
-    covariance_.matrix.resize(count_ + uncertainty.cols(), count_ + uncertainty.cols());
-    covariance_.matrix << stated, across, across.transpose(), uncertainty;
+    covariance_.matrix.resize(count_ + of_fixed.cols(), count_ + of_fixed.cols());
+    covariance_.matrix << stated, across, across.transpose(), of_fixed;
     GpsFit fit;
     fit.stated = error_of(stated);
     const Eigen::MatrixXd matrix = matrix_.topLeftCorner(count_, count_);
@@ -411,7 +411,7 @@ class GpsSolver {
 
   /// Covariance of the fixed directions: the prior, or the value stated in the file.
   Eigen::MatrixXd held_covariance() const {
-    const Eigen::MatrixXd stated = task_.uncertainty(requested_, requested_);
+    const Eigen::MatrixXd stated = task_.stated_covariance(requested_, requested_);
     if (!(stated.diagonal().minCoeff() > 0.0)) return held_ * held_.transpose();
     const Eigen::MatrixXd scaled =
         prior_deviation_.cwiseInverse().asDiagonal() * held_;  // orthonormal columns

@@ -17,7 +17,7 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
   const Eigen::Index size = as_index(requested.size());
   if (!task.uses_prior()) return Eigen::MatrixXd::Zero(0, size);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, size);
-  const Eigen::MatrixXd uncertainty = task.uncertainty(requested, requested);
+  const Eigen::MatrixXd stated_covariance = task.stated_covariance(requested, requested);
   std::vector<Eigen::Index> stated;
   for (Eigen::Index k = 0; k < size; ++k) {
     const std::size_t parameter = requested[static_cast<std::size_t>(k)];
@@ -25,7 +25,7 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
     const FitParameter& prior = task.parameters[parameter];
     // A formula has no typical size.
     const double typical = prior.typical > 0.0 ? prior.typical : std::abs(prior.start);
-    if (uncertainty(k, k) > 0.0) {
+    if (stated_covariance(k, k) > 0.0) {
       stated.push_back(k);
     } else if (typical > 0.0) {
       rows(k, k) = 1.0 / typical;
@@ -39,7 +39,7 @@ Eigen::MatrixXd stated_rows(const FitTask& task, const std::vector<std::size_t>&
     }
   }
   if (stated.empty()) return rows;
-  const Eigen::MatrixXd covariance = uncertainty(stated, stated);
+  const Eigen::MatrixXd covariance = stated_covariance(stated, stated);
   // The inverse root, of the correlations: coefficients of one law may differ by powers of ten.
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   constexpr double min_eigenvalue = 1e-10;  // nearly certain directions are treated as equal

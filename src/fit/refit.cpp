@@ -139,7 +139,7 @@ Fitted at_start(const FitTask& task) {
     fitted.parameters.insert(fitted.parameters.end(), stage.begin(), stage.end());
   }
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
-    if (fitted.stage_of[p] == 0 && task.uncertainty(as_index(p), as_index(p)) > 0.0)
+    if (fitted.stage_of[p] == 0 && task.stated_covariance(as_index(p), as_index(p)) > 0.0)
       fitted.fixed_with_error.push_back(p);
   }
   fitted.solution.values = task.start;
