@@ -31,24 +31,11 @@ struct Testability {
   }
 };
 
-/// @param given has a value if a sample is used
-Testability testability_of(const FlightColumns& flight, const std::vector<double>& given,
+Testability testability_of(const FlightColumns& flight, const std::vector<std::size_t>& used,
                            const ColumnGroup& group) {
-  Testability found;
-  std::vector<char> is_missing(given.size(), 0);
-  for (const auto& column : flight.candidates.middleCols(group.first, group.count).colwise()) {
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      if (std::isnan(given[i])) continue;
-      const float value = column[as_index(i)];
-      if (!std::isfinite(value)) is_missing[i] = 1;
-      found.varies = found.varies || std::abs(value) > 0.0F;
-    }
-  }
-  found.samples =
-      given.size() - static_cast<std::size_t>(std::count_if(given.begin(), given.end(),
-                                                            [](double value) { return std::isnan(value); }));
-  found.missing = static_cast<std::size_t>(std::count(is_missing.begin(), is_missing.end(), 1));
-  return found;
+  const Eigen::ArrayXXf values = flight.candidates(used, Eigen::seqN(group.first, group.count));
+  return {used.size(), static_cast<std::size_t>((!values.isFinite()).rowwise().any().count()),
+          (values.abs() > 0.0F).any()};
 }
 
 /// Reason why a candidate cannot be tested on these columns; empty if it can.
@@ -173,8 +160,12 @@ std::vector<std::string> problems_of(
   const auto found = columns.partition.all_gather_flights<std::vector<Testability>>([&](std::size_t f) {
     const FlightColumns& flight = columns.flights[f];
     const std::vector<double> given = given_of(flight);
+    std::vector<std::size_t> used;
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (!std::isnan(given[i])) used.push_back(i);
+    }
     std::vector<Testability> of_each;
-    for (const ColumnGroup& group : groups) of_each.push_back(testability_of(flight, given, group));
+    for (const ColumnGroup& group : groups) of_each.push_back(testability_of(flight, used, group));
     return of_each;
   });
   std::vector<std::string> problems;

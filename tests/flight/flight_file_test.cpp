@@ -54,14 +54,17 @@ class MemoryFile final : public FlightFile {
   std::vector<double> missing_values(int) const override { return {-1.0}; }
   std::array<double, 2> valid_range(int) const override { return {-1000.0, 1e10}; }
   void read(int variable, RecordBlock records, double* out) const override {
+    ++requests_;
     const std::size_t rate = at(variable).values.size() / 3;
     std::copy_n(at(variable).values.begin() + static_cast<std::ptrdiff_t>(records.first * rate),
                 records.count * rate, out);
   }
+  int requests() const { return requests_; }
 
  private:
   const Variable& at(int variable) const { return variables_.at(static_cast<std::size_t>(variable)); }
 
+  mutable int requests_ = 0;
   std::filesystem::path path_{"memory"};
   std::vector<Variable> variables_{
       {"Time", "seconds since 2004-02-18 00:00:00 +0000", {60.0, 61.0, 62.0}},
@@ -76,6 +79,18 @@ TEST(FlightFile, AnyFormatIsReadAsAFlight) {
   EXPECT_EQ(flight.time().first, 1077062460.0);
   EXPECT_EQ(flight.variable("PSFD").rate, 2);
   EXPECT_THAT(values_of(flight, "PSFD"), ElementsAre(700.0, 700.1, 700.2, IsNan(), 700.4, 700.5));
+}
+
+TEST(FlightFile, RepeatedReadMakesNoRequest) {
+  auto file = std::make_unique<MemoryFile>();
+  const MemoryFile& memory = *file;
+  const Flight flight(std::move(file), pcor::TimestampAlignment::begin);
+  const std::vector<double> first = values_of(flight, "PSFD");
+  const int requests = memory.requests();
+  EXPECT_THAT(values_of(flight, "PSFD"), testing::Pointwise(testing::NanSensitiveDoubleEq(), first));
+  EXPECT_EQ(memory.requests(), requests);
+  values_of(flight, "QCF");
+  EXPECT_EQ(memory.requests(), requests + 1);
 }
 
 TEST(FlightFile, AnyFormatIsCopiedToNetcdf) {
