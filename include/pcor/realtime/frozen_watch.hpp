@@ -56,7 +56,7 @@ class SteadyValue {
       if (length_ == fewest_) limit_ = limit();
       return is_frozen();
     }
-    if (!is_missing(last_)) end_of_run(value - last_);
+    if (length_ > 0) end_of_run(value - last_);
     last_ = value;
     length_ = 1;
     return false;
@@ -71,13 +71,13 @@ class SteadyValue {
 
   void end_of_run(double step) noexcept {
     double weight = part;
-    if (!is_frozen()) {
-      weight = std::min(1.0, part * static_cast<double>(length_));
-      lengths_[runs_ % lengths_.size()] = length_;
-      ++runs_;
+    if (length_ > 1) {
+      last_step_ = 0.0;
+      if (!is_frozen()) weight = std::min(1.0, part * static_cast<double>(length_));
     }
+    if (!is_frozen()) lengths_[runs_++ % lengths_.size()] = length_;
     resolution_ = std::min(resolution_, std::abs(step));
-    const double bend = std::abs(step - (length_ > 1 ? 0.0 : last_step_));
+    const double bend = std::abs(step - last_step_);
     is_bent_ += weight * ((bend >= noisy * resolution_ ? 1.0 : 0.0) - is_bent_);
     last_step_ = step;
   }
@@ -118,7 +118,8 @@ class FrozenWatch {
   /// @param rate samples in a second
   FrozenWatch(const Chain& chain, double rate) {
     for (const Quantity quantity : always_varying) {
-      if (chain.recorded(quantity)) sensors_.push_back({quantity, {rate, 300.0}});
+      if (chain.recorded(quantity))
+        sensors_.push_back({quantity, {rate, 300.0}, limits_of_places[index(quantity)]});
     }
   }
 
@@ -129,6 +130,7 @@ class FrozenWatch {
 
   /// Ends the runs of one value, as at a gap. The usual noise stays known.
   void end() noexcept {
+    any_frozen_ = false;
     for (Sensor& sensor : sensors_) {
       sensor.value.end();
       sensor.is_frozen = false;
@@ -137,46 +139,47 @@ class FrozenWatch {
 
   /// True if the quantity was frozen at the last sample.
   bool is_frozen(Quantity quantity) const noexcept {
-    return std::any_of(sensors_.begin(), sensors_.end(), [quantity](const Sensor& sensor) {
-      return sensor.quantity == quantity && sensor.is_frozen;
-    });
+    return any_frozen_ && std::any_of(sensors_.begin(), sensors_.end(), [quantity](const Sensor& sensor) {
+             return sensor.quantity == quantity && sensor.is_frozen;
+           });
   }
 
   /// True if a quantity other than `excluded` was frozen at the last sample.
   bool any_but(Quantity excluded) const noexcept {
-    return std::any_of(sensors_.begin(), sensors_.end(), [excluded](const Sensor& sensor) {
-      return sensor.quantity != excluded && sensor.is_frozen;
-    });
+    return any_frozen_ && std::any_of(sensors_.begin(), sensors_.end(), [excluded](const Sensor& sensor) {
+             return sensor.quantity != excluded && sensor.is_frozen;
+           });
   }
 
   /// True if one of them is frozen at this sample.
   bool operator()(const State<double>& state) noexcept {
-    const auto value_of = [&state](Quantity quantity) {
-      return plausible_or_missing(quantity, state[quantity]);
-    };
-    const double q = value_of(Quantity::dynamic_pressure);
-    bool frozen = false;
-    for (Sensor& sensor : sensors_) {
-      const double value = value_of(sensor.quantity);
-      sensor.is_frozen = false;
-      if (q < min_flight_pressure) {
-        sensor.value.end();
-      } else if (!is_missing(q + value)) {
-        sensor.is_frozen = sensor.value(value);
+    const double q = state[Quantity::dynamic_pressure];
+    any_frozen_ = false;
+    if (is_missing(plausible_or_missing(Quantity::dynamic_pressure, q))) {
+      for (Sensor& sensor : sensors_) sensor.is_frozen = false;
+    } else if (q < min_flight_pressure) {
+      end();
+    } else {
+      for (Sensor& sensor : sensors_) {
+        const double value = state[sensor.quantity];
+        sensor.is_frozen =
+            value >= sensor.limits.minimum && value <= sensor.limits.maximum && sensor.value(value);
+        any_frozen_ = any_frozen_ || sensor.is_frozen;
       }
-      frozen = frozen || sensor.is_frozen;
     }
-    return frozen;
+    return any_frozen_;
   }
 
  private:
   struct Sensor {
     Quantity quantity;
     SteadyValue value;
+    Limits limits;  // plausible values
     bool is_frozen = false;
   };
 
   std::vector<Sensor> sensors_;
+  bool any_frozen_ = false;
 };
 
 }  // namespace pcor
