@@ -16,6 +16,9 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shuti
 
 # A page in the background, as every page without a window is to Chromium, gets less processor time and slow timers.
 FOREGROUND = ("--disable-renderer-backgrounding", "--disable-backgrounding-occluded-windows", "--disable-background-timer-throttling")
+# Pages of one process keep compiled scripts; nothing is fetched or synchronized.
+ALONE = ("--disable-site-isolation-trials", "--disable-extensions", "--disable-component-update", "--disable-background-networking",
+         "--disable-sync")
 
 
 def skip_without(browser, name):
@@ -51,7 +54,7 @@ class Browser:
         # The browser reads at descriptor 3 and writes at 4; a shell puts the pipes there.
         self.child = subprocess.Popen(
             ["/bin/sh", "-c", f'exec "$@" 3<&{from_us} 4>&{to_us}', "sh", program, "--headless=new", "--no-sandbox",
-             "--disable-gpu", *FOREGROUND, f"--user-data-dir={profile}", f"--window-size={width},{height}", *words, "--remote-debugging-pipe"],
+             "--disable-gpu", *FOREGROUND, *ALONE, f"--user-data-dir={profile}", f"--window-size={width},{height}", *words, "--remote-debugging-pipe"],
             env=environment, pass_fds=(from_us, to_us), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(from_us)
         os.close(to_us)

@@ -39,7 +39,7 @@ def make_folder(add_cleanup):
     made = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
     add_cleanup(made.cleanup)
     folder = Path(made.name)
-    subprocess.run([SAMPLE_REPORT, folder / "report.html"], check=True)
+    subprocess.run([SAMPLE_REPORT, folder / "report.html", "1500"], check=True)
     return folder
 
 

@@ -16,8 +16,9 @@
     return count;
   }
 
-  // Drags over the middle half of a time panel, zooms there by a key, and clears the selection by another.
-  function tryTimePanel(panel, report, expect) {
+  // Drags over the middle half of a time panel and clears the selection by a key; also zooms and moves by keys, and clears by a
+  // double click, if `all`: each of these draws all pictures.
+  function tryTimePanel(panel, report, expect, all) {
     const {picture, canvas, drawn: {plot}, item: {title}} = panel;
     const left = canvas.getBoundingClientRect().left + plot.x;
     const pointer = (type, part) => picture.dispatchEvent(
@@ -31,12 +32,15 @@
       `'${title}' shows no values under the pointer`);
     pointer('pointerup', 0.75);
     expect(Math.abs(lasts() - 0.5) < 0.01, `dragging over half of '${title}' selects ${lasts()} of it`);
-    press('+');
-    expect(Math.abs(lasts() - 0.25) < 0.01, `the plus key on '${title}' selects ${lasts()}`);
-    press('ArrowRight');
-    expect(report.samples.range[0] > 0.375 * length, `the right arrow on '${title}' does not move`);
+    if (all) {
+      press('+');
+      expect(Math.abs(lasts() - 0.25) < 0.01, `the plus key on '${title}' selects ${lasts()}`);
+      press('ArrowRight');
+      expect(report.samples.range[0] > 0.375 * length, `the right arrow on '${title}' does not move`);
+    }
     press('Escape');
     expect(!report.samples.isFiltered, `Escape on '${title}' does not show all`);
+    if (!all) return;
     pointer('pointerdown', 0.1);
     pointer('pointermove', 0.3);
     pointer('pointerup', 0.3);
@@ -93,8 +97,9 @@
   expect(String(report.points) === String(before) && String(pixels()) === String(pixelsBefore),
     'clear does not restore the pictures');
 
-  for (const panel of panels) if (panel.item.kind === 'time') tryTimePanel(panel, report, expect);
-  for (const chip of report.bar.chips) {
+  panels.filter(({item}) => item.kind === 'time').forEach((panel, i) => tryTimePanel(panel, report, expect, i === 0));
+  const {chips} = report.bar;
+  for (const chip of new Set([chips[0], chips[chips.length >> 1], chips[chips.length - 1]].filter(Boolean))) {
     chip.click();
     const inside = samples.regimes.get(chip.textContent).reduce((count, one) => count + one, 0);
     expect(report.selection.count === inside,
@@ -114,9 +119,5 @@
   expect(unnamed.length === 0, `${unnamed.length} buttons have no words`);
   expect(document.documentElement.scrollWidth <= window.innerWidth, 'the page is wider than its window');
   for (const message of errors) wrong.push(`error: ${message}`);
-
-  const started = performance.now();
-  report.draw();
-  const redraw = Math.round(performance.now() - started);
-  return {wrong, panels: panels.length, points: before, redraw, dark: report.isDark};
+  return {wrong, panels: panels.length, points: before, dark: report.isDark};
 }
