@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,8 @@ import pcor
 from pcor._tool import tool
 
 SOURCE = Path(__file__).parents[2]
+sys.path.insert(0, str(SOURCE / "tests/tool"))
+from scenarios import half_of_hidden  # noqa: E402
 os.environ.setdefault("MPLBACKEND", "agg")
 
 
@@ -20,11 +23,8 @@ def run_tool(*words, folder=None):
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("flights")
-    # The first half of this flight, which has every kind of manoeuvre.
-    hidden = (SOURCE / "data/scenarios/c130-hidden.toml").read_text()
-    climb, landing = ("[[leg]]\nkind = " + leg for leg in ('"climb"\naltitude = 5500', '"landing"'))
     scenario = folder / "hidden.toml"
-    scenario.write_text(hidden[:hidden.index(climb)] + hidden[hidden.index(landing):])
+    scenario.write_text(half_of_hidden(SOURCE))
     for name, seed in ("first", 101), ("second", 102), ("third", 103):
         pcor.simulate(scenario, seed=seed, output=folder / f"{name}.nc")
     (folder / "model.toml").write_text((SOURCE / "data/scenarios/models/c130-psfd-eq18.toml").read_text())

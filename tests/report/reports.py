@@ -40,6 +40,9 @@ if GOTEX.exists():
         "diagnose-gps": (GOTEX, "-m", "gps.toml", *BY_GPS),
     }
 TOOL, SOURCE, FOLDER = (Path(word).resolve() for word in sys.argv[1:4])
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+sys.path.insert(0, str(SOURCE / "tests/tool"))
+from scenarios import half_of_hidden  # noqa: E402
 
 
 def run(*words, **more):
@@ -58,10 +61,7 @@ def looked_at(ways):
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
-    # The first half of this flight has every kind of manoeuvre.
-    hidden = (SOURCE / "data/scenarios/c130-hidden.toml").read_text()
-    climb, landing = ("[[leg]]\nkind = " + leg for leg in ('"climb"\naltitude = 5500', '"landing"'))
-    (FOLDER / "hidden.toml").write_text(hidden[:hidden.index(climb)] + hidden[hidden.index(landing):])
+    (FOLDER / "hidden.toml").write_text(half_of_hidden(SOURCE))
     for name, scenario, seed in (("one", "hidden.toml", 101), ("two", "hidden.toml", 102), ("three", "hidden.toml", 103),
                                  ("climbs", SOURCE / "data/scenarios/c130-climbs.toml", 1)):
         run(TOOL, "simulate", scenario, "--seed", seed, "-o", f"{name}.nc", "--quiet")

@@ -12,6 +12,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from scenarios import half_of_hidden  # noqa: E402
+
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 MODEL = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
@@ -54,11 +57,11 @@ class JsonKeys(unittest.TestCase):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.folder = Path(cls.scratch.name)
-        for seed, name in enumerate(("first", "second"), 1):
-            scenario = SOURCE / "data/scenarios/c130-hidden.toml"
-            cls.run_tool("simulate", scenario, "--seed", 100 + seed, "-o", f"{name}.nc")
-        for name in ("climbs", "short"):
-            cls.run_tool("simulate", SOURCE / f"data/scenarios/c130-{name}.toml", "-o", f"{name}.nc")
+        (cls.folder / "hidden.toml").write_text(half_of_hidden(SOURCE))
+        climbs, short = (SOURCE / f"data/scenarios/c130-{name}.toml" for name in ("climbs", "short"))
+        for scenario, seed, name in (("hidden.toml", 101, "first"), ("hidden.toml", 102, "second"), (climbs, 31, "climbs"),
+                                     (short, 3, "short")):
+            cls.run_tool("simulate", scenario, "--seed", seed, "-o", f"{name}.nc")
         (cls.folder / "damaged.nc").write_bytes(b"CDF\x01 damaged")
         cls.run_tool("refit", "first.nc", "second.nc", "-m", MODEL, "-o", "both.toml")
 
@@ -116,7 +119,7 @@ class JsonKeys(unittest.TestCase):
                                    "--force"])
 
     def test_simulate(self):
-        self.check("simulate", [SOURCE / "data/scenarios/c130-hidden.toml", "-o", "hidden.nc"])
+        self.check("simulate", ["hidden.toml", "-o", "hidden.nc"])
 
     def test_effects(self):
         self.check("effects", [], ["load-factor"], ["lams-fold"])
