@@ -355,7 +355,7 @@ class Attributes(ChangedTest):
             seconds[:] = numpy.arange(190000)
             for name, unit, value in (("PSFD", "hPa", 700), ("QCF", "hPa", 60), ("QCR", "hPa", 60), ("ADIFR", "hPa", 5),
                                       ("TTRR", "degC", 5), ("EDPC", "hPa", 5)):
-                variable = flight.createVariable(name, "f4", ("Time", "sps1000"), zlib=True)
+                variable = flight.createVariable(name, "f4", ("Time", "sps1000"), zlib=True, chunksizes=(100, 1000))
                 variable.units = unit
                 variable[:100] = value
         self.assertLess(path.stat().st_size, 1000000)
