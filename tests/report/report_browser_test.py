@@ -12,6 +12,7 @@ import json
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 import urllib.parse
 from pathlib import Path
@@ -41,12 +42,19 @@ def coloured(picture):
     return (picture[::4].max(axis=2) - picture[::4].min(axis=2) > 40).sum()
 
 
+def setUpModule():
+    """One browser for all classes."""
+    folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
+    unittest.addModuleCleanup(folder.cleanup)
+    PageTest.browser = Browser(CHROMIUM, folder.name, words=("--hide-scrollbars",))
+    unittest.addModuleCleanup(PageTest.browser.close)
+
+
 class ReportInBrowser(PageTest):
     @classmethod
     def setUpClass(cls):
         cls.report = cls.make_folder() / "report.html"
         run(SAMPLE_REPORT, cls.report)
-        cls.start(Browser, CHROMIUM, cls.folder / "profile", words=("--hide-scrollbars",))
 
     def self_test(self, report, wish="light", width=1280):
         self.browser.resize(width)
@@ -119,7 +127,7 @@ class ReportUnderTheHand(PageTest):
     def setUpClass(cls):
         cls.report = cls.make_folder() / "report.html"
         run(SAMPLE_REPORT, cls.report, "2000", "2")
-        cls.start(Browser, CHROMIUM, cls.folder / "profile")
+        cls.browser.resize(1280)
 
     def setUp(self):
         self.browser.errors.clear()

@@ -35,21 +35,15 @@ def setUpModule():
                                (BOTH_TOO, SIDESLIP, 34)):
         scenario.write_text(text)
         subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+    WhatIfTest.browser = Browser(CHROMIUM, FLIGHTS / "profile", width=1400)
 
 
 def tearDownModule():
+    WhatIfTest.browser.close()
     comparison_test.MADE.cleanup()
 
 
 class WhatIfTest(ComparisonTest):
-    @classmethod
-    def setUpClass(cls):
-        cls.browser = Browser(CHROMIUM, FLIGHTS / "profile", width=1400)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.close()
-
     def setUp(self):
         super().setUp()
         self.browser.errors.clear()
