@@ -19,6 +19,9 @@ import time
 import unittest
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from scenarios import simulate  # noqa: E402
+
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 PAGE = (SOURCE / "docs/campaigns.md").read_text()
@@ -37,8 +40,7 @@ def setUpModule():
     FLIGHTS = Path(folder.name) / "all flights"
     for seed, name in enumerate(NAMES, 1):
         (FLIGHTS / name).parent.mkdir(parents=True, exist_ok=True)
-        subprocess.run([TOOL, "simulate", SOURCE / "data/scenarios/c130-short.toml", "--seed", str(seed), "-o", FLIGHTS / name,
-                        "--quiet"], check=True)
+        simulate(TOOL, FLIGHTS / name, (SOURCE / "data/scenarios/c130-short.toml").read_text(), seed)
     WHOLE = (FLIGHTS / BAD).read_bytes()
 
 

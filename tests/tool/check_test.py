@@ -10,7 +10,6 @@ import csv
 import os
 import re
 import shutil
-import subprocess
 import sys
 import unittest
 
@@ -19,6 +18,7 @@ import netCDF4
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, OTHER_SYSTEM, SCENARIO, SHORT_GV, ComparisonTest, addresses_in  # noqa: E402
+from scenarios import simulate  # noqa: E402
 from tool_test import TOOL, note_texts  # noqa: E402
 
 NAMES = ["total-pressure", "static-pressure", "reverse-heading", "circles", "speed-run", "pitch", "yaw", "layers",
@@ -31,10 +31,8 @@ ONE, TWO, GV = (FLIGHTS / name for name in ("one.nc", "two.nc", "gv.nc"))
 
 
 def setUpModule():
-    scenario = FLIGHTS / "scenario.toml"
     for output, text, seed in ((ONE, HEADINGS, 3), (TWO, HEADINGS, 4), (GV, SHORT_GV, 20)):
-        scenario.write_text(text)
-        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+        simulate(TOOL, output, text, seed)
 
 
 def tearDownModule():

@@ -21,16 +21,15 @@ import netCDF4
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ONE, TWO, ComparisonTest  # noqa: E402
+from scenarios import simulate  # noqa: E402
 from tool_test import SOURCE, TOOL, replace  # noqa: E402
 
 THREE = FLIGHTS / "three.nc"
 
 
 def setUpModule():
-    scenario = FLIGHTS / "scenario.toml"
-    scenario.write_text(comparison_test.SCENARIO)
     for output, seed in ((ONE, 3), (TWO, 4), (THREE, 5)):
-        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+        simulate(TOOL, output, comparison_test.SCENARIO, seed)
 
 
 def tearDownModule():

@@ -27,6 +27,7 @@ import numpy
 import xarray
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+from scenarios import simulate  # noqa: E402
 from tool_test import SOURCE, TOOL, ToolTest, note_texts, replace  # noqa: E402
 
 LAW = {"static-constant": ("a0", 0.004127875), "static-alpha": ("a1", 0.021279816), "static-qp": ("a2", 0.030849643)}
@@ -58,13 +59,10 @@ ONE, TWO, GV, STEADY = (FLIGHTS / name for name in ("one.nc", "two.nc", "gv.nc",
 
 
 def setUpModule():
-    scenario = FLIGHTS / "scenario.toml"
     for output, text, seed in ((ONE, SCENARIO, 3), (TWO, SCENARIO, 4), (GV, SHORT_GV, 20)):
-        scenario.write_text(text)
-        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
-    steady = SOURCE / "data/scenarios/c130-no-manoeuvres.toml"
+        simulate(TOOL, output, text, seed)
     # A seed whose sideslip term is found between its bounds.
-    subprocess.run([TOOL, "simulate", steady, "-o", STEADY, "--seed", "2", "--quiet"], check=True)
+    simulate(TOOL, STEADY, (SOURCE / "data/scenarios/c130-no-manoeuvres.toml").read_text(), 2)
 
 
 def tearDownModule():

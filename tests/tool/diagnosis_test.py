@@ -10,7 +10,6 @@ the same in every run.
 
 import os
 import shutil
-import subprocess
 import sys
 import tomllib
 import unittest
@@ -20,6 +19,7 @@ import netCDF4
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, MODEL, PUBLISHED, SHORT_GV, ComparisonTest, contents, with_effect  # noqa: E402
+from scenarios import simulate  # noqa: E402
 from tool_test import SOURCE, TOOL, note_texts, replace  # noqa: E402
 
 SCENARIO = comparison_test.SCENARIO
@@ -36,12 +36,10 @@ OWN = ('id = "my-thrust"\nwhere = "static"\nformula = "k * (ENGTRQ - 50) / 100"\
 
 
 def setUpModule():
-    scenario = FLIGHTS / "scenario.toml"
     flights = ((ONE, SCENARIO, 3), (LAGGING, LAG, 5), (LAGGING_TOO, LAG, 6), (THRUSTING, THRUST, 7),
                (GV, SHORT_GV, 20), (FLAPS, FLAPPED, 8), (BIASED, PORT, 9))
     for output, text, seed in flights:
-        scenario.write_text(text)
-        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+        simulate(TOOL, output, text, seed)
 
 
 def tearDownModule():

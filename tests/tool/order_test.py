@@ -7,7 +7,6 @@
 import json
 import math
 import re
-import subprocess
 import sys
 import unittest
 
@@ -15,6 +14,7 @@ sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ONE, OTHER_SYSTEM, TWO, ComparisonTest, with_a0  # noqa: E402
 from long_tests import in_long_tests  # noqa: E402
+from scenarios import simulate  # noqa: E402
 from tool_test import SOURCE, TOOL, replace  # noqa: E402
 
 THREE, CLIMBS = FLIGHTS / "three.nc", FLIGHTS / "climbs.nc"
@@ -58,11 +58,8 @@ CASES = {
 
 def setUpModule():
     comparison_test.setUpModule()
-    scenario = FLIGHTS / "scenario.toml"
-    scenario.write_text(comparison_test.SCENARIO)
-    subprocess.run([TOOL, "simulate", scenario, "-o", THREE, "--seed", "9", "--quiet"], check=True)
-    climbs = SOURCE / "data/scenarios/c130-climbs.toml"
-    subprocess.run([TOOL, "simulate", climbs, "-o", CLIMBS, "--seed", "31", "--quiet"], check=True)
+    simulate(TOOL, THREE, comparison_test.SCENARIO, 9)
+    simulate(TOOL, CLIMBS, (SOURCE / "data/scenarios/c130-climbs.toml").read_text(), 31)
 
 
 tearDownModule = comparison_test.tearDownModule

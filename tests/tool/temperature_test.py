@@ -24,6 +24,7 @@ import numpy
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import LASER, PUBLISHED, ComparisonTest, addresses_in, contents, with_a0  # noqa: E402
+from scenarios import simulate  # noqa: E402
 from tool_test import SOURCE, TOOL, note_texts, replace  # noqa: E402
 
 SCENARIO = (SOURCE / "data/scenarios/c130-climbs.toml").read_text()
@@ -45,10 +46,8 @@ SLOPES = ("fitted", "none", "level-legs", "climb-descent", "whole-flight")
 
 
 def setUpModule():
-    scenario = FLIGHTS / "scenario.toml"
-    scenario.write_text(SCENARIO)
     for output, seed in ((ONE, 31), (TWO, 32), (THREE, 33)):
-        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+        simulate(TOOL, output, SCENARIO, seed)
     subprocess.run([TOOL, "process", ONE, "-m", PUBLISHED, "-o", PROCESSED, "--hydrostatic", "--quiet"], check=True)
 
 
@@ -308,9 +307,7 @@ class Refusal(TemperatureTest):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.good = Path(cls.folder.name) / "good.nc"
-        scenario = Path(cls.folder.name) / "good.toml"
-        scenario.write_text(GOOD_THERMOMETER)
-        subprocess.run([TOOL, "simulate", scenario, "-o", cls.good, "--seed", "5", "--quiet"], check=True)
+        simulate(TOOL, cls.good, GOOD_THERMOMETER, 5)
 
     @classmethod
     def tearDownClass(cls):

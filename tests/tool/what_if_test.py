@@ -18,6 +18,7 @@ sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 import comparison_test  # noqa: E402
 from comparison_test import FLIGHTS, ComparisonTest, with_effect  # noqa: E402
 from long_tests import in_long_tests  # noqa: E402
+from scenarios import simulate  # noqa: E402
 from tool_test import SOURCE, TOOL  # noqa: E402
 
 sys.path.insert(0, str(SOURCE / "tests/report"))
@@ -30,11 +31,9 @@ FIRST, SECOND, BOTH, BOTH_TOO = (FLIGHTS / name for name in ("lag-one.nc", "lag-
 
 
 def setUpModule():
-    scenario = FLIGHTS / "scenario.toml"
     for output, text, seed in ((FIRST, LAG, 31), (SECOND, LAG, 32), (BOTH, SIDESLIP, 33),
                                (BOTH_TOO, SIDESLIP, 34)):
-        scenario.write_text(text)
-        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+        simulate(TOOL, output, text, seed)
     WhatIfTest.browser = Browser(CHROMIUM, FLIGHTS / "profile", width=1400)
 
 
