@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -16,16 +17,26 @@ TEST(CurrentInput, IsTheLastFileRead) {
   {
     const CurrentInput first(outer);
     EXPECT_STREQ(current_input_path(), "outer.nc");
-    { const CurrentInput again(outer); }
-    EXPECT_FALSE(had_previous_input());
     {
       const CurrentInput second(inner);
       EXPECT_STREQ(current_input_path(), "inner.nc");
-      EXPECT_TRUE(had_previous_input());
     }
     EXPECT_STREQ(current_input_path(), "outer.nc");
   }
   EXPECT_EQ(current_input_path(), nullptr);
+}
+
+TEST(CurrentInputDeathTest, OnlyAnotherFileIsAPreviousInput) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";  // a new process: other tests have read other files
+  const std::filesystem::path one = "one.nc", two = "two.nc";
+  const auto read = [&] {
+    { const CurrentInput first(one); }
+    { const CurrentInput again(one); }
+    const bool had_by_same = had_previous_input();
+    const CurrentInput other(two);
+    std::exit(!had_by_same && had_previous_input() ? 0 : 1);
+  };
+  EXPECT_EXIT(read(), testing::ExitedWithCode(0), "");
 }
 
 TEST(CurrentInput, MeasuresItsProcessingTime) {
