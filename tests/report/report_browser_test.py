@@ -94,7 +94,10 @@ class ReportInBrowser(PageTest):
         report = self.folder / "long.html"
         run(SAMPLE_REPORT, report, "18000")
         self.assertLess(report.stat().st_size, 1_500_000)
+        self.browser.errors.clear()
         self.browser.open(report.as_uri())
+        self.assertTrue(self.browser.value("pcorReport.points.every((count) => count > 0)"))
+        self.assertEqual(self.browser.errors, [])
         self.assertLess(self.browser.value("(() => { const begin = performance.now(); pcorReport.draw(); return performance.now() - begin; })()"), 2000)
 
     def test_several_flights(self):

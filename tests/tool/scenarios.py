@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 
@@ -16,14 +17,15 @@ def half_of_hidden(source):
 
 
 def simulate(tool, output, scenario, seed=None):
-    """Writes the simulated flight of the text of a scenario. A program simulates a flight once; later calls copy it."""
+    """Writes the simulated flight of the text of a scenario. Each flight is simulated once for each build of the tool, kept beside
+    the tool, and copied. Flights of builds that are older than a day are deleted."""
     options = [] if seed is None else ["--seed", str(seed)]
-    flights = tool.parent / "simulated" / str(tool.stat().st_mtime_ns)
+    flights = tool.parent / "pcor_test_flights" / str(tool.stat().st_mtime_ns)
     flight = flights / hashlib.sha256(" ".join([*options, scenario]).encode()).hexdigest()
     if not flight.exists():
         flights.mkdir(parents=True, exist_ok=True)
         for other in flights.parent.iterdir():
-            if other != flights:
+            if time.time() - other.stat().st_mtime > 86400:
                 shutil.rmtree(other, ignore_errors=True)
         with tempfile.TemporaryDirectory(dir=flights) as folder:
             written, simulated = Path(folder) / "scenario.toml", Path(folder) / "flight.nc"
