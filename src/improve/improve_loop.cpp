@@ -489,15 +489,19 @@ class ForwardSelection {
       return fmt::format("rejected: {}, rms of the fit {} with it, {} without it", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
-    set_errors(step, fit, model.shared_effects);
     // Without held-out flights, the cross-validation parts of the diagnosis are used. If the model describes
     // more samples than before (flaps extended), both models are compared on these samples.
     const bool same_samples = fit.samples == result_.fit.samples;
     const bool is_cross_validated = !loop_.has_holdout && same_samples;
     const TrialComparison& judged = loop_.has_holdout ? held_out : fitted;
     const double before = is_cross_validated ? result_.steps.back().rms_holdout : judged.rms_before;
+    // A diagnosis of the extended model could not change this.
+    if (is_cross_validated && !candidate.is_sure)
+      return fmt::format(
+          "rejected: {}, the diagnosis found no significant decrease of chi2 on held-out blocks", id);
+    set_errors(step, fit, model.shared_effects);
     const double after = is_cross_validated ? step.rms_holdout : judged.rms_after;
-    const bool better = is_cross_validated ? after <= before && candidate.is_sure : judged.is_better();
+    const bool better = is_cross_validated ? after <= before : judged.is_better();
     const bool worse = after > before || (!is_cross_validated && judged.is_worse());
     const std::string figures =
         fmt::format("held-out rms {} with it, {} without it", shown(after), shown(before));

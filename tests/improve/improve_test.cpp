@@ -8,7 +8,6 @@
 #include <memory>
 #include <random>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -625,6 +624,19 @@ TEST_F(Improve, WithoutHeldOutFlightsCrossValidationDecides) {
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_DOUBLE_EQ(improvement.steps[0].rms_holdout, 0.8);
   EXPECT_FALSE(improvement.holdout_is_flights);
+  EXPECT_THAT(improvement.stop_explanation, HasSubstr("static-lag"));
+}
+
+TEST_F(Improve, UncertainEffectIsRejectedWithoutADiagnosisOfTheExtendedModel) {
+  loop_.has_holdout = false;
+  Diagnosis unsure = diagnosis(Verdict::identified, {"static-lag"});
+  unsure.residual_rms_held_out = 1.0;
+  unsure.findings.front().chi2_reduction = 1.6 * unsure.findings.front().chi2_reduction_error;
+  Diagnosis better = diagnosis(Verdict::none_detected);
+  better.residual_rms_held_out = 0.5;
+  const Improvement improvement = run({unsure, better, better}, {1.0, 0.5});
+  EXPECT_EQ(diagnoses_.size(), 2U) << "that of the input model alone was asked for";
+  EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(improvement.stop_explanation, HasSubstr("static-lag"));
 }
 
