@@ -84,6 +84,7 @@ Analysis::Analysis(PartitionedColumns columns, std::vector<ColumnGroup> groups,
     const double by_drift = search_from(start, false);
     if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true);
   }
+  known_noise_.assign(reference_count(), {});
   if (nuisances_ > 0) find_variance_factor();
 }
 
@@ -246,12 +247,17 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
             further_.begin(), further_.end(),
             [number](const FlightColumns& each) { return each.reference == number && each.is_by_gps; });
         if (is_rough || has_white_rows) return estimate_noise(bins, residuals);
-        KnownNoise& known = known_noise_[number];
-        if (!are_equal(known.columns, columns) || !are_equal(known.residuals, residuals))
-          known = {columns, residuals, internal::find_noise(bins, columns, residuals, partition_.threads())};
-        if (number == 0) drift_gain_ = known.found.drift_gain;
-        likelihood_ += known.found.likelihood;
-        return extrapolate_drift(known.found.model);  // this likelihood includes only what the flights show
+        std::vector<KnownNoise>& known = known_noise_[number];
+        auto same = std::find_if(known.begin(), known.end(), [&](const KnownNoise& each) {
+          return are_equal(each.columns, columns) && are_equal(each.residuals, residuals);
+        });
+        if (same == known.end())
+          same = known.insert(same, {columns, residuals,
+                                     internal::find_noise(bins, columns, residuals, partition_.threads())});
+        const FoundNoise& found = same->found;
+        if (number == 0) drift_gain_ = found.drift_gain;
+        likelihood_ += found.likelihood;
+        return extrapolate_drift(found.model);  // this likelihood includes only what the flights show
       });
   coefficients_ = coefficients;
 }

@@ -174,7 +174,7 @@ class Analysis {
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
   std::vector<NoiseModel> noise_{};
-  std::vector<KnownNoise> known_noise_{};  // one per reference; some references see no tested effect
+  std::vector<std::vector<KnownNoise>> known_noise_{};  // against each reference; for repeated searches
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
   Eigen::Index nuisances_ = 0;                  // columns of nuisances of GPS
