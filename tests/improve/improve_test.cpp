@@ -635,7 +635,7 @@ TEST_F(Improve, UncertainEffectIsRejectedWithoutADiagnosisOfTheExtendedModel) {
   Diagnosis better = diagnosis(Verdict::none_detected);
   better.residual_rms_held_out = 0.5;
   const Improvement improvement = run({unsure, better, better}, {1.0, 0.5});
-  EXPECT_EQ(diagnoses_.size(), 2U) << "that of the input model alone was asked for";
+  EXPECT_EQ(diagnoses_.size(), 2U) << "one diagnosis, of the input model";
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(improvement.stop_explanation, HasSubstr("static-lag"));
 }
