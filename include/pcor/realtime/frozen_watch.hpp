@@ -118,8 +118,7 @@ class FrozenWatch {
   /// @param rate samples in a second
   FrozenWatch(const Chain& chain, double rate) {
     for (const Quantity quantity : always_varying) {
-      if (chain.recorded(quantity))
-        sensors_.push_back({quantity, {rate, 300.0}, limits_of_places[index(quantity)]});
+      if (chain.recorded(quantity)) sensors_.push_back({quantity, {rate, 300.0}});
     }
   }
 
@@ -162,8 +161,7 @@ class FrozenWatch {
     } else {
       for (Sensor& sensor : sensors_) {
         const double value = state[sensor.quantity];
-        sensor.is_frozen =
-            value >= sensor.limits.minimum && value <= sensor.limits.maximum && sensor.value(value);
+        sensor.is_frozen = !is_missing(plausible_or_missing(sensor.quantity, value)) && sensor.value(value);
         any_frozen_ = any_frozen_ || sensor.is_frozen;
       }
     }
@@ -174,7 +172,6 @@ class FrozenWatch {
   struct Sensor {
     Quantity quantity;
     SteadyValue value;
-    Limits limits;  // plausible values
     bool is_frozen = false;
   };
 
