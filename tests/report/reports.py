@@ -42,7 +42,7 @@ if GOTEX.exists():
 TOOL, SOURCE, FOLDER = (Path(word).resolve() for word in sys.argv[1:4])
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 sys.path.insert(0, str(SOURCE / "tests/tool"))
-from scenarios import half_of_hidden  # noqa: E402
+from scenarios import half_of_hidden, simulate  # noqa: E402
 
 
 def run(*words, **more):
@@ -61,10 +61,10 @@ def looked_at(ways):
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
-    (FOLDER / "hidden.toml").write_text(half_of_hidden(SOURCE))
-    for name, scenario, seed in (("one", "hidden.toml", 101), ("two", "hidden.toml", 102), ("three", "hidden.toml", 103),
-                                 ("climbs", SOURCE / "data/scenarios/c130-climbs.toml", 1)):
-        run(TOOL, "simulate", scenario, "--seed", seed, "-o", f"{name}.nc", "--quiet")
+    climbs = (SOURCE / "data/scenarios/c130-climbs.toml").read_text()
+    for name, scenario, seed in (("one", half_of_hidden(SOURCE), 101), ("two", half_of_hidden(SOURCE), 102),
+                                 ("three", half_of_hidden(SOURCE), 103), ("climbs", climbs, 1)):
+        simulate(TOOL, FOLDER / f"{name}.nc", scenario, seed)
     shutil.copy(SOURCE / "data/scenarios/models/c130-psfd-eq18.toml", FOLDER / "model.toml")
     for name, words in COMMANDS.items():
         run(TOOL, name.split("-")[0], *words, "--report", f"{name}.html", "--quiet")

@@ -13,7 +13,7 @@ import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # no __pycache__ in the source directory
-from scenarios import half_of_hidden  # noqa: E402
+from scenarios import half_of_hidden, simulate  # noqa: E402
 
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
@@ -57,11 +57,12 @@ class JsonKeys(unittest.TestCase):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.folder = Path(cls.scratch.name)
-        (cls.folder / "hidden.toml").write_text(half_of_hidden(SOURCE))
-        climbs, short = (SOURCE / f"data/scenarios/c130-{name}.toml" for name in ("climbs", "short"))
-        for scenario, seed, name in (("hidden.toml", 101, "first"), ("hidden.toml", 102, "second"), (climbs, 31, "climbs"),
+        hidden = half_of_hidden(SOURCE)
+        (cls.folder / "hidden.toml").write_text(hidden)
+        climbs, short = ((SOURCE / f"data/scenarios/c130-{name}.toml").read_text() for name in ("climbs", "short"))
+        for scenario, seed, name in ((hidden, 101, "first"), (hidden, 102, "second"), (climbs, 31, "climbs"),
                                      (short, 3, "short")):
-            cls.run_tool("simulate", scenario, "--seed", seed, "-o", f"{name}.nc")
+            simulate(TOOL, cls.folder / f"{name}.nc", scenario, seed)
         (cls.folder / "damaged.nc").write_bytes(b"CDF\x01 damaged")
         cls.run_tool("refit", "first.nc", "second.nc", "-m", MODEL, "-o", "both.toml")
 
