@@ -494,13 +494,17 @@ class ForwardSelection {
     const bool same_samples = fit.samples == result_.fit.samples;
     const bool is_cross_validated = !loop_.has_holdout && same_samples;
     const TrialComparison& judged = loop_.has_holdout ? held_out : fitted;
-    const double before = is_cross_validated ? result_.steps.back().rms_holdout : judged.rms_before;
-    // A diagnosis of the extended model could not change this.
-    if (is_cross_validated && !candidate.is_sure)
-      return fmt::format(
-          "rejected: {}, the diagnosis found no significant decrease of chi2 on held-out blocks", id);
-    set_errors(step, fit, model.shared_effects);
-    const double after = is_cross_validated ? step.rms_holdout : judged.rms_after;
+    double before = judged.rms_before;
+    double after = judged.rms_after;
+    if (is_cross_validated) {
+      // A diagnosis of the extended model could not change this.
+      if (!candidate.is_sure)
+        return fmt::format(
+            "rejected: {}, the diagnosis found no significant decrease of chi2 on held-out blocks", id);
+      set_errors(step, fit, model.shared_effects);
+      before = result_.steps.back().rms_holdout;
+      after = step.rms_holdout;
+    }
     const bool better = is_cross_validated ? after <= before : judged.is_better();
     const bool worse = after > before || (!is_cross_validated && judged.is_worse());
     const std::string figures =
@@ -516,6 +520,7 @@ class ForwardSelection {
       return fmt::format("rejected: {}, {}; a term with an unknown cause must reduce the rms by {:.0f} %", id,
                          figures, 100.0 * (1.0 - unnamed_limit));
     }
+    if (!is_cross_validated) set_errors(step, fit, model.shared_effects);
     step.summary = fmt::format(
         "{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id), shown(before),
         shown(after),

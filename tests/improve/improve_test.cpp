@@ -267,6 +267,33 @@ TEST_F(Improve, DropsAnEffectThatRaisesTheHeldOutResidual) {
   }
 }
 
+// The two models are compared on the samples of the larger fit: the diagnosis of the extended model does not
+// count, and an accepted model has one.
+TEST_F(Improve, ModelOfMoreSamplesIsDiagnosedIfAccepted) {
+  loop_.has_holdout = false;
+  loop_.refit = [this](const TrialModel& model) {
+    RefitResult fit = fitted(model.file);
+    fit.samples = 1000 + model.file.model.effects.size();
+    return fit;
+  };
+  std::size_t diagnoses = 0;
+  loop_.diagnose = [&diagnoses](const TrialModel&) {
+    ++diagnoses;
+    Diagnosis found = diagnosis(Verdict::partial, {"flaps-gear"});
+    found.residual_rms_held_out = 0.7;
+    return found;
+  };
+  const Improvement rejected = run({}, {1.0, 0.995});
+  EXPECT_THAT(added(rejected), ElementsAre(""));
+  EXPECT_EQ(rejected.stop_reason, StopReason::no_gain);
+  EXPECT_EQ(diagnoses, 1U);
+  const Improvement kept = run({}, {1.0, 0.5});
+  EXPECT_THAT(added(kept), ElementsAre("", "flaps-gear"));
+  EXPECT_EQ(diagnoses, 3U);
+  EXPECT_EQ(kept.steps[1].diagnosis.verdict, Verdict::partial);
+  EXPECT_DOUBLE_EQ(kept.steps[1].rms_holdout, 0.7);
+}
+
 TEST_F(Improve, RefusedFindingIsFollowedByTheOthers) {
   const Improvement improvement =
       run({diagnosis(Verdict::identified, {"static-lag", "static-mach"}), diagnosis(Verdict::none_detected)},
