@@ -42,10 +42,9 @@ TrialComparison out_of_blocks(const FlightSet& flights, const Pair& models, cons
   for (std::size_t block = 0; block < held_out_blocks; ++block) {
     RefitOptions without_block = options;
     without_block.shared_effects = models[0].shared_effects;
-    if (!without_block.mask.intervals) without_block.mask.intervals.emplace();
     for (const TrialFlight& flight : outline) {
       if (flight.first_reference && flight.fitted.size() >= held_out_blocks)
-        without_block.mask.intervals->exclude.push_back(block_of(flight, block));
+        without_block.mask.excluded_times.push_back(block_of(flight, block));
     }
     for (std::size_t k = 0; k < models.size(); ++k) {
       trials.push_back({fitted_coefficients(flights, models[k].file, references, without_block, priors[k]),
@@ -77,9 +76,7 @@ std::optional<SurfaceOffer> offer_surface(const FlightSet& flights, const TrialM
                                           const References& references, const RefitOptions& options) {
   const std::string id(surface_info.front().id);
   const bool is_in_memory = flights.path(0).empty();
-  const bool names_a_flight = options.mask.intervals && !options.mask.intervals->flight.empty();
-  if (is_in_memory || has_effect(model.file, id) || (names_a_flight && flights.size() > 1))
-    return std::nullopt;
+  if (is_in_memory || has_effect(model.file, id)) return std::nullopt;
   Pair models{model, model};
   try {
     const auto flight = [&flights](std::size_t number) -> const Flight& { return flights[number]; };

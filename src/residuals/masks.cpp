@@ -60,12 +60,16 @@ std::vector<Mask> masks_without_flaps(const FlightSamples& samples, const MaskOp
     else if (std::any_of(options.exclude.begin(), options.exclude.end(), in))
       masks[i] = Mask::regime;
   }
-  if (!options.intervals || time.empty() || !options.intervals->is_for(samples.name)) return masks;
-  for (const Exclusion& exclusion : placed(*options.intervals, time.front(), time.back()).exclude) {
-    for (std::size_t i = 0; i < masks.size(); ++i) {
-      if (time[i] >= exclusion.begin && time[i] < exclusion.end) masks[i] = Mask::excluded;
+  const auto exclude = [&](const std::vector<Exclusion>& spans) {
+    for (const Exclusion& span : spans) {
+      for (std::size_t i = 0; i < masks.size(); ++i) {
+        if (time[i] >= span.begin && time[i] < span.end) masks[i] = Mask::excluded;
+      }
     }
-  }
+  };
+  exclude(options.excluded_times);
+  if (options.intervals && !time.empty() && options.intervals->is_for(samples.name))
+    exclude(placed(*options.intervals, time.front(), time.back()).exclude);
   return masks;
 }
 

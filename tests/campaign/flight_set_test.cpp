@@ -154,6 +154,10 @@ TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
   fast.min_airspeed = 90.0;
   EXPECT_NE(flights.samples(0, model, *lams_reference(), fast), first);
   EXPECT_NE(flights.samples(0, model, *pressure_reference("PS_A"), mask), first);
+  MaskOptions without_a_part = mask;
+  without_a_part.excluded_times = {{first->time.front(), first->time.front() + 60.0, ""}};
+  EXPECT_EQ(flights.samples(0, model, *lams_reference(), without_a_part), samples(model))
+      << "excluded times change the mask only";
   const FlightSet forgetful({path}, {TimestampAlignment::begin, &serial_communicator(), 0});
   EXPECT_NE(forgetful.samples(0, model, *lams_reference(), mask),
             forgetful.samples(0, model, *lams_reference(), mask));

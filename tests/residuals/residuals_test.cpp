@@ -186,6 +186,18 @@ TEST(Masks, EveryUnusedSampleHasAReason) {
   }
 }
 
+TEST(Masks, ExcludedTimesApplyToEveryFlight) {
+  MaskOptions options;
+  options.intervals.emplace().flight = "another.nc";
+  const Residuals whole = residuals_of_flight(laser_model(), *pcor::lams_reference(), options);
+  const std::vector<double>& time = whole.samples().time;
+  const std::size_t first = used(whole)[100];
+  options.excluded_times = {{time[first], time[first + 10], ""}};
+  const Residuals tested = residuals_of_flight(laser_model(), *pcor::lams_reference(), options);
+  for (std::size_t i = first - 1; i <= first + 10; ++i)
+    EXPECT_EQ(tested.mask()[i] == Mask::excluded, i >= first && i < first + 10) << i;
+}
+
 TEST(Masks, MissingOrWrongLaserIsExcluded) {
   const ModelDefinition model = laser_model();
   const auto samples = samples_with_laser(model);

@@ -52,6 +52,9 @@ struct MaskOptions {
   std::optional<double> max_flaps{};
   std::vector<Regime> exclude{};  ///< excluded regimes, in addition to the ground
   std::optional<UserIntervals> intervals{};
+  /// Excluded in all flights, also if `intervals` is for one of them; s since 1970 UTC, never times of the
+  /// day.
+  std::vector<Exclusion> excluded_times{};
 };
 
 }  // namespace pcor
