@@ -33,7 +33,8 @@ struct NoiseModel {
 /// A noise model, and how well it describes the residuals that it was found from.
 struct FoundNoise {
   NoiseModel model{};
-  double drift_gain = 0.0;  ///< twice the gain in restricted log-likelihood by the slow parts
+  double drift_gain = 0.0;  ///< twice the gain in restricted log-likelihood by the slow parts; may be
+                            ///< slightly negative for more than 6,000 bins
   double likelihood = 0.0;  ///< twice the log-likelihood, with the columns at their best, without constants
 };
 
@@ -72,7 +73,9 @@ Eigen::VectorXd noise_levels(const Binning& bins, const Eigen::VectorXd& residua
 /// Complete noise of residuals to which columns are fitted: autoregression and levels by `estimate_noise`,
 /// then the drift components and a common scale of all parts by maximum likelihood for the residuals of the
 /// fit: restricted likelihood, which allows for the drift that the columns absorb (Patterson and Thompson
-/// 1971, Biometrika 58, 545). Innovations beyond three standard deviations are limited to three.
+/// 1971, Biometrika 58, 545). Innovations beyond three standard deviations are limited to three. The drift of
+/// more than 6,000 bins is found from means of three bins by the same likelihood at a given scale of the
+/// faster noise, which the bins themselves determine, in turn.
 ///
 /// @param columns of each flight, in bins: all fitted columns
 /// @param residuals of each flight, in bins, after the fit, hPa

@@ -9,9 +9,17 @@
 namespace pcor::internal {
 namespace {
 
-/// The autocovariance at lags 0 ... p-1 of an autoregression of order p whose innovations have variance one,
-/// by the recursion of Levinson backwards and forwards.
-std::vector<double> autocovariance(const std::vector<double>& coefficients) {
+double* column(Eigen::MatrixXd& matrix, std::size_t number) { return matrix.col(as_index(number)).data(); }
+
+double dot(const double* a, const double* b, std::size_t count) {
+  using Values = Eigen::Map<const Eigen::VectorXd>;
+  return Values(a, as_index(count)).dot(Values(b, as_index(count)));
+}
+
+}  // namespace
+
+std::vector<double> autocovariance(const std::vector<double>& coefficients, std::size_t count) {
+  // The predictors of lower orders, by the recursion of Levinson backwards.
   const std::size_t order = coefficients.size();
   std::vector<std::vector<double>> predictors(order + 1);
   predictors[order] = coefficients;
@@ -25,22 +33,14 @@ std::vector<double> autocovariance(const std::vector<double>& coefficients) {
     variance /= kept;
   }
   std::vector<double> result{variance};
-  for (std::size_t lag = 1; lag < order; ++lag) {
+  for (std::size_t lag = 1; lag < count; ++lag) {
+    const std::vector<double>& predictor = predictors[std::min(lag, order)];
     double sum = 0.0;
-    for (std::size_t i = 0; i < lag; ++i) sum += predictors[lag][i] * result[lag - 1 - i];
+    for (std::size_t i = 0; i < predictor.size(); ++i) sum += predictor[i] * result[lag - 1 - i];
     result.push_back(sum);
   }
   return result;
 }
-
-double* column(Eigen::MatrixXd& matrix, std::size_t number) { return matrix.col(as_index(number)).data(); }
-
-double dot(const double* a, const double* b, std::size_t count) {
-  using Values = Eigen::Map<const Eigen::VectorXd>;
-  return Values(a, as_index(count)).dot(Values(b, as_index(count)));
-}
-
-}  // namespace
 
 Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t flight)
     : coefficients_(noise.coefficients), level_(noise.level[flight]) {
@@ -61,7 +61,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   gain_.resize(as_index(size), count);
   deviation_.resize(count);
 
-  const std::vector<double> stationary = autocovariance(coefficients_);
+  const std::vector<double> stationary = autocovariance(coefficients_, order_);
   // Covariance of the state, of which the upper triangle is kept. In loops by hand: blocks of such a size
   // cost a matrix library more than they compute.
   Eigen::MatrixXd now = Eigen::MatrixXd::Zero(as_index(size), as_index(size));

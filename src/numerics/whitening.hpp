@@ -8,6 +8,10 @@
 
 namespace pcor::internal {
 
+/// Autocovariance at the lags 0 ... count-1 of a stationary autoregression whose innovations have variance
+/// one.
+std::vector<double> autocovariance(const std::vector<double>& coefficients, std::size_t count);
+
 /// Inverse root of the covariance of the noise of one flight, applied to columns: the innovations of a Kalman
 /// filter whose state is the autoregression and the drift components, each divided by its standard deviation
 /// (Harvey 1989, Forecasting, structural time series models and the Kalman filter, section 3.4). Exact at the

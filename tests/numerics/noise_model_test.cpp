@@ -37,7 +37,7 @@ Eigen::VectorXd second_order(std::size_t count, unsigned seed, const Level& leve
 }
 
 /// The autocovariance of an autoregression with innovations of variance 1, from its impulse response.
-std::vector<double> autocovariance(const std::vector<double>& coefficients, std::size_t lags) {
+std::vector<double> by_impulse_response(const std::vector<double>& coefficients, std::size_t lags) {
   constexpr std::size_t length = 2000;
   std::vector<double> response(length + lags, 0.0);
   response[0] = 1.0;
@@ -79,7 +79,7 @@ TEST(Whitening, CovarianceBecomesTheIdentity) {
     Eigen::VectorXd level(static_cast<Eigen::Index>(bins.size()));
     for (Eigen::Index i = 0; i < level.size(); ++i) level[i] = 0.3 + 0.1 * static_cast<double>(i % 5);
     noise.level = {level};
-    const std::vector<double> lags = autocovariance(coefficients, bins.size());
+    const std::vector<double> lags = by_impulse_response(coefficients, bins.size());
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(level.size(), level.size());
     for (const pcor::Segment& segment : bins.segments()) {
       for (std::size_t i = 0; i < segment.count; ++i) {
