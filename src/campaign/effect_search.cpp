@@ -273,11 +273,7 @@ std::vector<Eigen::VectorXd> EffectSearch::rows_after(std::size_t group,
   const std::vector<Eigen::Index> rest = indices_of(set_without(others, group), groups_, base_);
   const Eigen::VectorXd imitated = scores_->information(rest, Eigen::all).leftCols(columns) * weight;
   weight(rest) = -pseudo_solution(scores_->information(rest, rest), imitated);
-  std::vector<Eigen::VectorXd> rows(scores_->rows.size());
-  for (std::size_t f = 0; f < rows.size(); ++f) {
-    if (scores_->partition.is_local(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
-  }
-  return rows;
+  return scores_->sums_of_columns(weight);
 }
 
 double EffectSearch::level(std::size_t winner, const std::vector<std::size_t>& chosen,

@@ -144,11 +144,22 @@ PartialSums& PartialSums::operator+=(const PartialSums& other) {
   return *this;
 }
 
-std::vector<Eigen::VectorXd> WhitenedSystem::residuals_after(const Eigen::VectorXd& coefficients) const {
+std::vector<Eigen::VectorXd> WhitenedSystem::sums_of_columns(const Eigen::VectorXd& coefficients) const {
   std::vector<Eigen::VectorXd> result(rows.size());
   for (std::size_t f = 0; f < rows.size(); ++f) {
-    if (partition.is_local(f))
-      result[f] = rows[f].col(columns()) - rows[f].leftCols(columns()) * coefficients;
+    if (!partition.is_local(f)) continue;
+    result[f] = Eigen::VectorXd::Zero(rows[f].rows());
+    for (Eigen::Index k = 0; k < columns(); ++k) {
+      if (coefficients[k] != 0.0) result[f] += coefficients[k] * rows[f].col(k);  // most are zero
+    }
+  }
+  return result;
+}
+
+std::vector<Eigen::VectorXd> WhitenedSystem::residuals_after(const Eigen::VectorXd& coefficients) const {
+  std::vector<Eigen::VectorXd> result = sums_of_columns(coefficients);
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    if (partition.is_local(f)) result[f] = rows[f].col(columns()) - result[f];
   }
   return result;
 }
@@ -233,7 +244,8 @@ void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier
 WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,
                              const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& residuals,
-                             const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white) {
+                             const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white,
+                             bool sums_up) {
   WhitenedSystem scores;
   scores.partition = partition;
   scores.rows.resize(bins.size());
@@ -258,9 +270,11 @@ WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector
     scores.row_count += rows;
     scores.blocks += blocks;
   }
-  sum_up(scores);
+  const bool drifts =
+      std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.has_drift(); });
+  if (sums_up || !drifts) sum_up(scores);
   scores.plain = scores.information;
-  if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.has_drift(); })) {
+  if (drifts) {
     scores.plain = partition.all_reduce_flights<Eigen::MatrixXd>(
         [&](std::size_t f) {
           NoiseModel still = noise[f];

@@ -89,7 +89,9 @@ struct WhitenedSystem {
     return bin[flight].empty() ? row : bin[flight][static_cast<std::size_t>(row)];
   }
 
-  /// Whitened residuals of each flight of this process after the columns with these coefficients.
+  /// Sums of the whitened columns with these coefficients, for each flight of this process.
+  std::vector<Eigen::VectorXd> sums_of_columns(const Eigen::VectorXd& coefficients) const;
+  /// Whitened residuals of each flight of this process after these sums.
   std::vector<Eigen::VectorXd> residuals_after(const Eigen::VectorXd& coefficients) const;
 
   /// Sums over the minutes of all flights of a value of each row. @param of_rows gives these values for a
@@ -105,11 +107,12 @@ struct WhiteFlight {
 
 /// Whitens the columns of each local flight. @param noise likewise, each of one flight alone
 /// @param white rows of flights that need no whitening; empty for the others
+/// @param sums_up false: `information`, and with it `columns()`, is not set before the caller calls `sum_up`
 WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,
                              const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& residuals,
-                             const std::vector<NoiseModel>& noise,
-                             const std::vector<WhiteFlight>& white = {});
+                             const std::vector<NoiseModel>& noise, const std::vector<WhiteFlight>& white = {},
+                             bool sums_up = true);
 
 /// Whitens with one noise model for all flights and the noise level of each flight.
 WhitenedSystem whiten_system(const FlightPartition& partition, const std::vector<Binning>& bins,

@@ -330,7 +330,8 @@ WhitenedSystem Analysis::whiten(const std::vector<Eigen::MatrixXd>& columns,
           binned_.bins[f].bins()[static_cast<std::size_t>(std::max<std::ptrdiff_t>(next, 1) - 1)]);
     }
   }
-  WhitenedSystem system = whiten_system(partition_, binned_.bins, all, binned_.residuals, noise_, white);
+  WhitenedSystem system = whiten_system(partition_, binned_.bins, all, binned_.residuals, noise_, white,
+                                        further_.empty());  // otherwise see `take_out_common_noise`
   if (nuisances_ > 0) {
     const auto rows = partition_.all_reduce_flights<double>(
         [&white](std::size_t f) { return static_cast<double>(white[f].rows.rows()); });
