@@ -206,7 +206,8 @@ class RestrictedLikelihood {
   };
 
   Value operator()(const NoiseModel& given) {
-    const NoiseModel noise = is_wide_ ? in_wide_bins(given, bins_) : given;
+    const NoiseModel wide = is_wide_ ? in_wide_bins(given, bins_) : NoiseModel();
+    const NoiseModel& noise = is_wide_ ? wide : given;
     std::vector<double> determinants(bins_.size());
     parallel_for(bins_.size(), threads_, [&](std::size_t f) {
       const Whitening whitening(bins_[f], noise, f);
